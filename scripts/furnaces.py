@@ -25,10 +25,7 @@ SIDE, SAMPLES = 16, 1024
 WHY = """
 Metals and plastics mean the same in both, and the other kinds do not:
 
-- **Edges of dielectrics.** glTF has Schlick's formula, and luthier takes it. Cycles takes Fresnel's equations of the index: {2:.3f} less at 85 degrees for an F0 of .04.
-- **Rough dielectrics at grazing angles.** The interface of `metallic-roughness` bends no light. Light that a facet lets through therefore goes on as slantingly as it came, and the simulation lets it meet more
-  facets, each of which reflects some. With a black base and a roughness of .8 it returns {0[3]:.3f} of the light at 75 degrees and {0[4]:.3f} at 85; a `dielectric` of the same F0 over black, which bends light, {1[3]:.3f} and {1[4]:.3f}. This is a weakness
-  of that layer, to whose simulation `lobes` is fitted.
+- **Edges of dielectrics.** glTF has Schlick's formula, and luthier takes it. Cycles takes Fresnel's equations of the index: {0:.3f} less at 85 degrees for an F0 of .04.
 - **Mixtures.** Blender mixes a metal and a dielectric under one interface; glTF blends two surfaces, and so does luthier.
 - **Coats.** In Cycles a coat dims what lies below and sends nothing back to it. Here light goes to and fro, and a smooth coat keeps slanted light from a metal: gold under lacquer is darker at 75 degrees.
 
@@ -145,20 +142,6 @@ def simulated(luthier, path):
     return [row["albedo"] for row in found["albedo"]]
 
 
-def edges(luthier, folder):
-    """Albedos of a rough interface over black, that bends no light and that does."""
-    out = []
-    tail = "roughness = 0.8\n"
-    whole = "type = \"metallic-roughness\"\nbase_color = 0\n" + tail
-    parts = "type = \"dielectric\"\nf0 = 0.04\n" + tail + "[[layer]]\ntype = \"diffuse\"\nalbedo = 0\n"
-    for layers in (whole, parts):
-        path = os.path.join(folder, "edge.toml")
-        with open(path, "w") as file:
-            file.write("schema = 1\nname = \"edge\"\n[[layer]]\n" + layers)
-        out.append([row[0] for row in simulated(luthier, path)])
-    return out
-
-
 def reflectance(n, angle):
     """Fresnel's equations of a dielectric, for unpolarised light."""
     cos = math.cos(angle)
@@ -170,7 +153,7 @@ def text(rgb):
     return " ".join(f"{c:.3f}" for c in rgb)
 
 
-def report(version, given, ours, theirs, black):
+def report(version, given, ours, theirs):
     """The page, and materials of one meaning that are apart."""
     # Of an index of 1.5 at 85 degrees.
     schlick, fresnel = 0.04 + 0.96 * (1 - math.cos(math.radians(85))) ** 5, reflectance(1.5, math.radians(85))
@@ -191,7 +174,7 @@ Random numbers make differences of up to .003.
     for kind in dict.fromkeys(row[0] for row in rows):
         of_kind = [row[2] for row in rows if row[0] == kind]
         page.append(f"| {kind} | {len(of_kind)} | {' | '.join(f'{max(column):.3f}' for column in zip(*of_kind))} |")
-    page.append(WHY.format(*black, schlick - fresnel))
+    page.append(WHY.format(schlick - fresnel))
     page.append(f"| material | kind | {' | '.join(f'{angle}' for angle in ANGLES)} | luthier, 0 degrees | Cycles | luthier, 75 degrees | Cycles |\n|---|---|{'--:|' * len(ANGLES)}---|---|---|---|")
     for kind, name, apart, own, other in rows:
         at = ANGLES.index(75)
@@ -212,10 +195,9 @@ def main(luthier, output):
         with open(os.path.join(target, "import.json")) as file:
             files = [found["file"] for found in json.load(file)["sources"][0]["materials"]]
         ours = [simulated(luthier, os.path.join(target, name)) for name in files]
-        black = edges(luthier, folder)
         version, theirs = rendered(path, len(given), folder)
     # Blender writes its log to standard output.
-    page, far = report(version, given, ours, theirs, black)
+    page, far = report(version, given, ours, theirs)
     with open(output, "w") as file:
         file.write(page)
     if far:

@@ -21,14 +21,15 @@ pub(crate) fn constants(
     lobes: Option<LobesRecord>,
     side: Option<SideRecord>,
 ) -> MaterialConstants {
-    let (stack, color) = (&material.stack, material.color());
+    let (stack, color) = (&*material.reflecting_stack(), material.color());
     let (internal_reflectance, upward_loss) =
         if material.model().is_statistical() { veil(stack, &color) } else { ([0.0; 3], 0.0) };
-    let [phong_diffuse, phong_specular] = Coefficients::in_color(stack, &color);
+    let crossed = stack.crossed_once();
+    let [phong_diffuse, phong_specular] = Coefficients::in_color(&crossed, &color);
     MaterialConstants {
         phong_diffuse,
         phong_specular,
-        phong_exponent: exponent(stack, material.bake.wavelengths_nm()),
+        phong_exponent: exponent(&crossed, material.bake.wavelengths_nm()),
         internal_reflectance,
         upward_loss,
         lobes,

@@ -119,7 +119,7 @@ impl Part {
                 // Models of statistics and of one interface do not show where a film is not.
                 None if material.weighs_film() && !material.model().is_path() => None,
                 None => {
-                    let Stack { exterior, mut layers } = material.bare_stack();
+                    let Stack { exterior, mut layers } = material.bare(&material.reflecting_stack());
                     layers.truncate(1);
                     let stack = Stack { exterior, layers };
                     let second = usize::from(!material.weighs_film());

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use luthier_model::ModelPart;
+use luthier_model::{Family, ModelPart};
 use luthier_optics::Rgb;
 use luthier_optics::brightening::Brightening;
 use luthier_optics::color::Color;
@@ -102,12 +102,18 @@ impl Material {
         }
     }
 
-    /// The stack for computations of reflectance: its lower interfaces reflect as in air if the file says so.
+    /// The stack as its model sees it.
     pub fn reflecting_stack(&self) -> Cow<'_, Stack> {
-        match self.bake.lower_reflectance.unwrap_or_default() {
-            LowerReflectance::InPlace => Cow::Borrowed(&self.stack),
-            LowerReflectance::InAir => Cow::Owned(self.stack.with_lower_in_air()),
-        }
+        self.stack_of(self.model())
+    }
+
+    /// The stack as a model sees it: with lower interfaces that reflect as in air if the file says so; and with a `metallic-roughness` surface that light crosses
+    /// once ([`Stack::crossed_once`]), unless its light is simulated, or coefficients of the stack stand for it.
+    pub fn stack_of(&self, model: ShadingModel) -> Cow<'_, Stack> {
+        let is_in_air = model.is_path() && self.bake.lower_reflectance == Some(LowerReflectance::InAir);
+        let here = if is_in_air { Cow::Owned(self.stack.with_lower_in_air()) } else { Cow::Borrowed(&self.stack) };
+        let is_whole = model.is_fitted() || model.facts().family == Family::Coefficients;
+        if is_whole || !here.has_engine() { here } else { Cow::Owned(here.crossed_once()) }
     }
 
     /// Numbers of the model `granier-heidrich`, if the file gives some that differ from [`BeamsRecord::PLAIN`].
@@ -158,9 +164,9 @@ impl Material {
         self.family().is_some_and(|family| family.is_filmed)
     }
 
-    /// Its stack where a weight leaves it bare: without its first layer, or without the film on that.
-    pub fn bare_stack(&self) -> Stack {
-        if self.weighs_film() { self.stack.without_first_films() } else { self.stack.without_first() }
+    /// A stack of it where a weight leaves it bare: without its first layer, or without the film on that.
+    pub fn bare(&self, stack: &Stack) -> Stack {
+        if self.weighs_film() { stack.without_first_films() } else { stack.without_first() }
     }
 
     /// Shares of its light that its base gets back from a coat that does not darken it.
@@ -205,7 +211,7 @@ impl Material {
         let mut side = self.clone();
         side.bake.model = Some(model);
         if self.weighs_film() {
-            side.stack = self.bare_stack();
+            side.stack = self.bare(&self.stack);
             let first = side.layers.first_mut()?;
             (first.weight, first.weighs_film, first.maps.weight, first.film_variation) = (1.0, false, None, None);
             return Some(side);

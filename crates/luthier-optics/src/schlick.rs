@@ -55,25 +55,31 @@ pub fn index_below_film(above: f64, f0: f64) -> f64 {
 ///
 /// - F0 is `f = 0.04 + metallic (base_color - 0.04)`;
 /// - the albedo of the base is `c / (t + c (1 - t))`, so that it shows `c = base_color (1 - metallic)` of the light that enters;
-///   `t = (1 - f)(20/21)` is the share of the base's light that the smooth interface passes (Saunderson 1942).
+///   `t = (1 - f)(20/21) / n^2` is the share of the base's light that the smooth interface passes (Saunderson 1942), which bends it by the index
+///   n = 1.5 ([`DIELECTRIC_INDEX`]).
 pub fn metallic_roughness(base_color: Rgb, metallic: f64) -> (Rgb, Rgb) {
     metallic_and_matt(base_color, base_color, metallic)
 }
 
 /// [`metallic_roughness`] with a base colour of its own for the metal, and another for the dielectric.
 pub fn metallic_and_matt(metal: Rgb, matt: Rgb, metallic: f64) -> (Rgb, Rgb) {
-    let (curves, albedo) =
-        metallic_and_tinted(metal.map(|f0| F82 { f0, tint: 1.0 }), [DIELECTRIC_F0; 3], matt, metallic);
+    let (curves, albedo) = metallic_and_tinted(
+        metal.map(|f0| F82 { f0, tint: 1.0 }),
+        [DIELECTRIC_F0; 3],
+        matt,
+        metallic,
+        DIELECTRIC_INDEX,
+    );
     (curves.map(|curve| curve.f0), albedo)
 }
 
-/// [`metallic_and_matt`] with a metal that has an edge tint, and a dielectric of another F0: the interface is [`F82::in_dielectric`], and passes `t` of less
-/// what that reflects on average.
-pub fn metallic_and_tinted(metal: [F82; 3], dielectric: Rgb, matt: Rgb, metallic: f64) -> ([F82; 3], Rgb) {
+/// [`metallic_and_matt`] with a metal that has an edge tint, and a dielectric of another F0: the interface is [`F82::in_dielectric`], and passes
+/// `1 / n^2` of what it does not reflect on average, where it bends light by an index n.
+pub fn metallic_and_tinted(metal: [F82; 3], dielectric: Rgb, matt: Rgb, metallic: f64, index: f64) -> ([F82; 3], Rgb) {
     let curves = [0, 1, 2].map(|c: usize| metal[c].in_dielectric(dielectric[c], metallic));
     let albedo = [0, 1, 2].map(|i: usize| {
         let seen = matt[i] * (1.0 - metallic);
-        let passed = 1.0 - curves[i].average();
+        let passed = (1.0 - curves[i].average()) / (index * index);
         let sum = passed + seen * (1.0 - passed);
         if sum > 0.0 { seen / sum } else { 0.0 }
     });
@@ -82,6 +88,9 @@ pub fn metallic_and_tinted(metal: [F82; 3], dielectric: Rgb, matt: Rgb, metallic
 
 /// F0 of the dielectric of a `metallic-roughness` surface whose file names no other.
 pub const DIELECTRIC_F0: f64 = 0.04;
+
+/// Index over that above by which the interface of a `metallic-roughness` surface bends light, whatever it reflects: that of [`DIELECTRIC_F0`].
+pub const DIELECTRIC_INDEX: f64 = 1.5;
 
 /// Schlick's cosine-weighted mean over the hemisphere: F0 + (1 - F0)/21.
 pub fn schlick_average(f0: f64) -> f64 {

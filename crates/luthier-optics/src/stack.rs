@@ -9,6 +9,7 @@ use crate::Rgb;
 use crate::fresnel::FilmLayer;
 use crate::ior::Ior;
 use crate::ndf::Shape;
+use crate::schlick::DIELECTRIC_INDEX;
 
 /// A layered surface, from the exterior down.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,20 +35,45 @@ impl Stack {
         here
     }
 
-    /// The stack without its first layer. An interface that reflects by an F0 and has the index of the medium above bends no light, and bends none
-    /// below the exterior either: its index there is that of the exterior.
+    /// The stack without its first layer. A `metallic-roughness` surface bends light as before, by [`DIELECTRIC_INDEX`] under what lies above.
     #[must_use]
     pub fn without_first(&self) -> Self {
-        let mut layers = self.layers.iter();
-        let first = layers.next();
-        let mut here = Self { exterior: self.exterior.clone(), layers: layers.cloned().collect() };
-        if let (Some(Base::Dielectric { ior: above, .. }), Some(Base::Dielectric { ior, .. })) =
-            (first.map(|layer| &layer.base), here.layers.first_mut().map(|layer| &mut layer.base))
+        let mut here = Self { exterior: self.exterior.clone(), layers: self.layers.iter().skip(1).cloned().collect() };
+        if let Some(Base::Dielectric { ior, .. }) = here.layers.first_mut().map(|layer| &mut layer.base)
+            && let Some(curves) = ior.f82_rgb().filter(|_| ior.is_engine())
         {
-            let (a, b) = (above.samples(), ior.samples());
-            let is_unbent = a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.n == b.n);
-            if let Some(f0) = ior.f0().filter(|_| is_unbent) {
-                *ior = self.exterior.clone().with_f0(f0);
+            *ior = Ior::engine(&self.exterior).with_f82(curves);
+        }
+        here
+    }
+
+    /// Whether it has a `metallic-roughness` surface over a diffuse base.
+    pub fn has_engine(&self) -> bool {
+        self.layers.iter().any(|layer| matches!(&layer.base, Base::Dielectric { ior, .. } if ior.is_engine()))
+    }
+
+    /// The stack as models see it that follow light down and up once: a `metallic-roughness` surface shows its colour by that light alone. Its interface bends
+    /// none, and the albedo of its diffuse base is `r / (n^2 - r (n^2 - 1))`, n being [`DIELECTRIC_INDEX`]: that of the base below such an interface which has the
+    /// colour of the base r.
+    #[must_use]
+    pub fn crossed_once(&self) -> Self {
+        let mut here = self.clone();
+        let mut above = self.exterior.clone();
+        let mut is_engine = false;
+        for layer in &mut here.layers {
+            match &mut layer.base {
+                Base::Dielectric { ior, .. } => {
+                    is_engine = ior.is_engine();
+                    if let Some(curves) = ior.f82_rgb().filter(|_| is_engine) {
+                        *ior = above.clone().with_f82(curves);
+                    }
+                    above = ior.clone();
+                }
+                Base::Diffuse(base) if is_engine => {
+                    let square = DIELECTRIC_INDEX * DIELECTRIC_INDEX;
+                    base.albedo = base.albedo.map(|r| r / (square - r * (square - 1.0)));
+                }
+                _ => {}
             }
         }
         here

@@ -130,7 +130,7 @@ impl Candidate {
     /// The candidate's values at probes, computed once.
     pub(crate) fn values(&self, probes: &[Probe], footprint_deg: f64) -> &[Rgb] {
         self.values.get_or_init(|| {
-            let stack = footprint(&self.material.stack, footprint_deg);
+            let stack = footprint(&self.material.reflecting_stack(), footprint_deg);
             self.values_of(&stack, &self.exact(&stack), probes)
         })
     }
@@ -144,11 +144,11 @@ impl Candidate {
         footprint_deg: f64,
     ) -> (&[Rgb], Vec<Rgb>) {
         if self.model.is_fitted() {
-            let stack = &self.material.stack;
+            let stack = &*self.material.reflecting_stack();
             let exact = self.sharp_values.get_or_init(|| self.values_of(stack, &self.exact(stack), probes));
             return (exact, self.values_of(stack, terms, probes));
         }
-        let stack = footprint(&self.material.stack, footprint_deg);
+        let stack = footprint(&self.material.reflecting_stack(), footprint_deg);
         (self.values(probes, footprint_deg), self.values_of(&stack, terms, probes))
     }
 

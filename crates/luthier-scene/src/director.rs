@@ -418,7 +418,7 @@ fn table_errors(
     budgets: &[SceneBudget],
 ) -> Result<Vec<SceneError>, SceneFailure> {
     let (manifest, textures) = (&package.manifest, package.textures()?);
-    let stacks = materials.iter().map(|material| material.stack.clone()).collect();
+    let stacks = materials.iter().map(|material| material.reflecting_stack().into_owned()).collect();
     let subject = Subject { manifest, textures, stacks, maps: Vec::new(), films: Vec::new() };
     let errors = (0..materials.len()).map(|number| {
         let terms = TableTerms::new(&subject, number, Weights::EightBit)?;

@@ -25,13 +25,15 @@ fn patina_brings_the_layer_below_as_it_is_in_air() {
     assert!((patina.bare.ior_n[0] - 1.5 * bake.materials[0].records[1].ior_n[0]).abs() < 1e-12);
 }
 
-/// The bare layer is that of a material without the first, also where that bends no light. A weight of 1 is no weight, in every byte.
+/// The bare layer is that of a material without the first, also where that bends light as the medium above says. A weight of 1 is no weight, in every byte.
 #[test]
 fn a_weight_brings_the_layer_below_as_it_is_in_air() {
     let engine = "[[layer]]\ntype = \"metallic-roughness\"\nbase_color = [0.6, 0.3, 0.1]\nroughness = 0.5\n";
-    for below in [conductor("{ n = 0.3, k = 3.0 }", 0.1), engine.to_owned()] {
-        let coated = |weight: &str| material("coated", &(dielectric("1.5", 0.2) + weight + &below), SMALL);
-        let bake = bake_all(&[coated("weight = 0.4\n"), material("below", &below, SMALL)]);
+    let metal = conductor("{ n = 0.3, k = 3.0 }", 0.1);
+    for (below, model) in [(metal.as_str(), "elek"), (engine, "elek"), (engine, "lobes")] {
+        let settings = format!("[bake]\nmodel = \"{model}\"\n{SMALL}");
+        let coated = |weight: &str| material("coated", &(dielectric("1.5", 0.2) + weight + below), &settings);
+        let bake = bake_all(&[coated("weight = 0.4\n"), material("below", below, &settings)]);
         let [coated_constants, alone] = [&bake.materials[0].constants, &bake.materials[1].constants];
         let coat = coated_constants.coat.as_ref().unwrap();
         // The set shares their tiles too.

@@ -13,7 +13,8 @@ fn shading_metallic(given: LuthierPlace, material: u32, uv: vec2<f32>) -> Luthie
         return place;
     }
     // Without metal the albedo of the base says the base colour.
-    let passed = 0.96 * 20.0 / 21.0;
+    let eta = shading_layer(material, count - 2u).eta;
+    let passed = 0.96 * 20.0 / (21.0 * eta * eta);
     let albedo = shading_albedo(material);
     var color = albedo * passed / (1.0 - albedo * (1.0 - passed));
     if colors.y > 0u {

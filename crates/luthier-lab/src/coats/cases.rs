@@ -102,9 +102,9 @@ impl Case {
         if metallic == 1.0 {
             layers.push(layer(alpha, Base::Conductor { ior: clear().with_f0(color) }));
         } else {
-            // Light is bent by the coat or, without one, not at all: the colour is what the bare surface shows.
-            let index = if coat.is_some() { clear() } else { Ior::vacuum() };
-            layers.push(layer(alpha, Base::Dielectric { ior: index.with_f0(f0), slab }));
+            let above = if coat.is_some() { clear() } else { Ior::vacuum() };
+            let ior = Ior::engine(&above);
+            layers.push(layer(alpha, Base::Dielectric { ior: ior.with_f0(f0), slab }));
             let diffuse = Base::Diffuse(Diffuse { albedo, sigma: 0.0 });
             layers.push(Layer { films: Vec::new(), surface: Facets::smooth(), base: diffuse });
         }

@@ -8,6 +8,7 @@
 //! - Reflectances come from [`Terms`](crate::terms::Terms).
 //! - Channels share the spreads of Belcour's and Yamaguchi's models.
 
+use std::borrow::Cow;
 use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
@@ -36,6 +37,11 @@ pub struct Twin {
     cover: Option<(f64, Box<Twin>)>,
 }
 
+/// A stack as a model sees it: unless its light is simulated, of a `metallic-roughness` surface that light crosses once ([`Stack::crossed_once`]).
+pub(super) fn seen_by(model: ShadingModel, stack: &Stack) -> Cow<'_, Stack> {
+    if model.is_fitted() || !stack.has_engine() { Cow::Borrowed(stack) } else { Cow::Owned(stack.crossed_once()) }
+}
+
 impl Twin {
     /// The twin of the shader of a model. `wavelengths_nm` are those of the three channels. `color` is the colour of Phong's coefficients, which both
     /// forms of the shader read from the material. Everything else has the colour of the [`Terms`](crate::terms::Terms).
@@ -45,6 +51,7 @@ impl Twin {
 
     /// [`Twin::new`] with parts that a material chooses. Curves in place of reflectances have the colour `color`, too.
     pub fn with(model: ShadingModel, stack: &Stack, wavelengths_nm: [f64; 3], color: Color, parts: Parts) -> Self {
+        let stack = &*seen_by(model, stack);
         let is_chosen = model.takes(ModelPart::Reflectance) && parts.reflectance != Reflectance::Table;
         let reflectances = is_chosen.then(|| Reflectances::of(stack, wavelengths_nm, color, parts.reflectance));
         let shade = (room(model).twin)(&Given { stack, wavelengths_nm, color, parts });

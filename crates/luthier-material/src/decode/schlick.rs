@@ -3,7 +3,7 @@
 use luthier_optics::Rgb;
 use luthier_optics::f0_table::printed_f0;
 use luthier_optics::ior::{Ior, IorSample};
-use luthier_optics::schlick::{DIELECTRIC_F0, F82, index_of_f0, metallic_and_tinted};
+use luthier_optics::schlick::{DIELECTRIC_F0, DIELECTRIC_INDEX, F82, index_of_f0, metallic_and_tinted};
 use luthier_optics::stack::{Base, Diffuse, Layer, Slab, Stack};
 
 use super::darkening::Brightened;
@@ -31,12 +31,12 @@ pub(super) fn textured_conductor(
     let color = f0(at, sink);
     let (metal, matt) = brightened.map_or((color, color), |below| (below.metal(color), below.matt(color)));
     let metal = metal.map(|f0| F82 { f0, tint: 1.0 });
-    over_diffuse(above, metallic_and_tinted(metal, [DIELECTRIC_F0; 3], matt, 0.0), 0.0)
+    over_diffuse(above, metallic_and_tinted(metal, [DIELECTRIC_F0; 3], matt, 0.0, DIELECTRIC_INDEX), 0.0)
 }
 
-/// An interface that bends no light, over a diffuse base of an albedo.
+/// An interface that bends light as the usual dielectric does, over a diffuse base of an albedo.
 fn over_diffuse(above: &Ior, (curves, albedo): ([F82; 3], Rgb), sigma: f64) -> (Base, Option<Diffuse>) {
-    let ior = relative(above, 1.0).unwrap_or_else(Ior::vacuum).with_f82(curves);
+    let ior = Ior::engine(above).with_f82(curves);
     let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
     (Base::Dielectric { ior, slab }, Some(Diffuse { albedo, sigma }))
 }
@@ -88,9 +88,9 @@ pub(super) fn dielectric(at: &Section<'_>, given: Option<Ior>, above: &Ior, sink
 /// The interface of a `metallic-roughness` layer, and the diffuse base below it, which a metal lacks:
 ///
 /// - F0 is `f = d + metallic (base_color - d)`, where d is the `f0` of the dielectric, 0.04 if absent;
-/// - the index is that of the medium above: engines bend no light;
+/// - the index is 1.5 times that of the medium above, whatever the F0 is, so that maps of it and of the metal leave the directions of light;
 /// - the albedo of the base is `c / (t + c (1 - t))`, so that it shows `c = base_color (1 - metallic)` of the light that enters;
-///   `t = (1 - f)(20/21)` is the share of the base's light that the smooth interface passes.
+///   `t = (1 - f)(20/21) / 1.5^2` is the share of the base's light that the smooth interface passes.
 ///
 /// By Saunderson 1942 the surface then reflects `F(cos) + (1 - F(cos)) c` of the light from any direction, as the model of engines does, and
 /// its diffuse term is that of Kelemen and Szirmay-Kalos 2001, `c (1 - F(i))(1 - F(o)) / (pi (1 - (f + (1 - f)/21)))`.
@@ -130,7 +130,7 @@ pub(super) fn metallic_roughness(
     let (metal, matt) = brightened.map_or((color, color), |below| (below.metal(color), below.matt(color)));
     let tint = f82_tint(at);
     let metal = [0, 1, 2].map(|c: usize| F82 { f0: metal[c], tint: tint[c] });
-    let mixed = metallic_and_tinted(metal, dielectric_f0(at, sink), matt, metallic);
+    let mixed = metallic_and_tinted(metal, dielectric_f0(at, sink), matt, metallic, DIELECTRIC_INDEX);
     over_diffuse(above, mixed, at.number("sigma").unwrap_or(0.0))
 }
 
@@ -172,7 +172,7 @@ pub(super) fn check_bare(document: &Section<'_>, stack: &Stack, sink: &mut Sink<
 }
 
 /// Reports a weight of a coat over a dielectric with an F0 alone, whose index follows from the medium above: where the coat is not, that is the exterior. A
-/// dielectric that has an index, too, keeps it, and bends nothing in either place if it is that of the coat; nor does a `metallic-roughness` layer.
+/// dielectric that has an index, too, keeps it; a `metallic-roughness` layer bends light by the same ratio in either place.
 pub(super) fn check_below_weight(document: &Section<'_>, sink: &mut Sink<'_>) {
     let sections = document.sections("layer");
     let layers: Vec<&Section<'_>> = sections.iter().filter(|at| at.text("type") != Some("thin-film")).collect();

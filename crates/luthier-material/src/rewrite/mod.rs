@@ -85,6 +85,12 @@ impl File<'_> {
         if before.base == after.base && !(is_moved && has_implied_index(table, after)) {
             return Ok(());
         }
+        if number == 1
+            && self.original.is_bare_in_places()
+            && matches!(&before.base, Base::Dielectric { ior, .. } if ior.is_engine())
+        {
+            return Err(("type", "the index of this layer follows from the medium above, which is not in all places"));
+        }
         match (&before.base, &after.base) {
             (_, Base::Conductor { ior }) if is_mixed => {
                 drop(table.insert("base_color", rgb(ior.f0().unwrap_or_default())))

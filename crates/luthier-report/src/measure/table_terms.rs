@@ -223,6 +223,7 @@ impl Lobes {
                 let own = place.layers.get(family.interface).and_then(|own| own.f0).map(|own| own.map(|own| own.f0));
                 own.or(entry.layers[family.interface].f0).unwrap_or([DIELECTRIC_F0; 3])
             },
+            index: entry.layers[family.interface].eta,
             albedo: place.base_color.or(self.frame.base.map(|base| base.albedo)).unwrap_or_default(),
             depth: {
                 let (depths, slabs) = (entry.layers[0].optical_depth, slab_factors(place));

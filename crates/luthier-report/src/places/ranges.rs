@@ -8,6 +8,7 @@ use luthier_layers::effects::patina::Patina;
 use luthier_lut::{Image, Picture, TableKind};
 use luthier_manifest::{FlakesRecord, Form, LayerValues, LiveEntry, LiveRange, MapSlot, MaterialEntry, PlaceValues};
 use luthier_optics::sampling::split_mix::{GOLDEN, SplitMix64, mix};
+use luthier_optics::schlick::{DIELECTRIC_F0, schlick_average};
 
 use crate::measure::references::shows_cover;
 use crate::measure::subject::Subject;
@@ -177,8 +178,10 @@ impl Places {
         if let Some(base) = self.entry.constants.brightening {
             return base.base_color.map(|color| color as f32);
         }
-        let passed = 0.96 * 20.0 / 21.0;
-        let albedo = self.entry.layers.last().map_or([0.0; 3], |layer| layer.albedo);
+        let layers = &self.entry.layers;
+        let eta = layers.len().checked_sub(2).map_or(1.0, |interface| layers[interface].eta);
+        let passed = (1.0 - schlick_average(DIELECTRIC_F0)) / (eta * eta);
+        let albedo = layers.last().map_or([0.0; 3], |layer| layer.albedo);
         albedo.map(|albedo| (albedo * passed / (1.0 - albedo * (1.0 - passed))) as f32)
     }
 }

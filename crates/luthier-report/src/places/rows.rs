@@ -133,7 +133,7 @@ pub(super) fn place(values: &PlaceValues, entry: &MaterialEntry) -> Place {
             }
             None => Mix { metal: color, tint, dielectric, matt: color, metallic },
         };
-        let (curves, albedo) = mix.surface();
+        let (curves, albedo) = mix.surface(entry.layers[interface].eta);
         place.metal = Some(mix);
         place.base_color = Some(albedo);
         place.layers.resize(place.layers.len().max(interface + 1), LayerSample::NONE);

@@ -4,20 +4,19 @@
 //! of the simulation ([`ColorPaths`]) are means over paths. Three wavelengths stand for the colour. Effects are left out. A material takes some
 //! hundredths of a second, one with energies of rough interfaces some tenths. `lobes` is not measured, because it is fitted to the simulation.
 
-use std::borrow::Cow;
-
 use luthier_layers::directional_albedo::integral;
 use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::glam::DVec3;
 use luthier_layers::models::lobes::Mix;
 use luthier_layers::references::layered_mc::ColorPaths;
-use luthier_layers::twins::shaded::{Growth, Place, Shaded, Side};
+use luthier_layers::twins::shaded::{Growth, Place, Shaded, Side, index_of_engine};
 use luthier_manifest::ShadingModel;
 use luthier_material::{Diagnostic, Material, Metallic, Severity};
 use luthier_model::Family;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
+use luthier_optics::schlick::DIELECTRIC_INDEX;
 use luthier_optics::stack::{Base, Layer, Stack};
 
 use super::parts::parts_of;
@@ -133,10 +132,11 @@ fn albedos(material: &Material, model: ShadingModel, is_compared: bool) -> Vec<R
     let is_simulated = is_compared && material.stack.layers.iter().all(has_walks);
     let nm = material.bake.wavelengths_nm();
     let color = Color::ThreeWavelengths(nm);
-    let reflecting = if model.is_path() { material.reflecting_stack() } else { Cow::Borrowed(&material.stack) };
+    let reflecting = material.stack_of(model);
     let mut all = Vec::new();
-    for place in places(material, model) {
-        let stack = at(&material.stack, &place);
+    let as_simulated = places(material, model, DIELECTRIC_INDEX);
+    for (place, truth) in places(material, model, index_of_engine(model)).into_iter().zip(as_simulated) {
+        let stack = at(&material.stack, &truth);
         let ends = match place.patina {
             Some(coat) => {
                 vec![(coat.amount, stack.clone()), (1.0 - coat.amount, place.side.unwrap_or(Side::Coat).bare(&stack))]
@@ -176,7 +176,7 @@ fn simulated(ends: &[(f64, ColorPaths)], wo: DVec3) -> Rgb {
 }
 
 /// Places of a material where its albedos are compared.
-fn places(material: &Material, model: ShadingModel) -> Vec<Place> {
+fn places(material: &Material, model: ShadingModel, index: f64) -> Vec<Place> {
     let textured = material.layers.iter().enumerate().find_map(|(number, layer)| Some((number, layer.metallic?)));
     // Where a coat has its greatest weight, no texel makes it less.
     let patina = material.weight().filter(|_| !material.weighs_film() || model.is_path()).map(Growth::of_coat);
@@ -205,7 +205,7 @@ fn places(material: &Material, model: ShadingModel) -> Vec<Place> {
             }
             None => Mix { metal: base_color, tint, dielectric, matt: base_color, metallic },
         };
-        let (curves, albedo) = mix.surface();
+        let (curves, albedo) = mix.surface(index);
         let mut layers = vec![LayerSample::NONE; number + 1];
         layers[number].f0 = Some(curves);
         Place { patina, side, base_color: Some(albedo), layers, metal: Some(mix), ..Place::NONE }

@@ -120,10 +120,12 @@ enum How {
 
 impl<'a> Function<'a> {
     pub(crate) fn new(subject: &'a Subject, kind: &Kind) -> Self {
-        let stack = &subject.material.stack;
-        let whole = Self::of(subject, stack, kind);
-        let bare = subject.weight.filter(|_| subject.model.info().shading().is_none());
-        let bare = bare.map(|weight| (weight, Box::new(Self::of(subject, &subject.material.bare_stack(), kind))));
+        let material = &subject.material;
+        let shading = subject.model.info().shading();
+        let stack = shading.map_or(Cow::Borrowed(&material.stack), |model| material.stack_of(model));
+        let whole = Self::of(subject, &stack, kind);
+        let bare = subject.weight.filter(|_| shading.is_none());
+        let bare = bare.map(|weight| (weight, Box::new(Self::of(subject, &material.bare(&material.stack), kind))));
         Self { bare, ..whole }
     }
 
@@ -233,7 +235,7 @@ pub(super) fn parts(subject: &Subject) -> (Parts, Reflectance) {
 fn shaded(subject: &Subject, kind: &Kind) -> Option<How> {
     let (model, place) = (subject.model.info().shading()?, &subject.place);
     let material = &subject.material;
-    let stack = if model.is_path() { material.reflecting_stack() } else { Cow::Borrowed(&material.stack) };
+    let stack = material.stack_of(model);
     let stack = stack.as_ref();
     let fit = subject.fit.as_ref();
     let (parts, reflectance) = parts(subject);

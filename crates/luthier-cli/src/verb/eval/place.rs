@@ -8,12 +8,12 @@ use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::effects::patina::Patina;
 use luthier_layers::models::lobes::Mix;
 use luthier_layers::noise::voronoi::Voronoi;
-use luthier_layers::twins::shaded::{Growth, Place};
+use luthier_layers::twins::shaded::{Growth, Place, index_of_engine};
 use luthier_lut::{Image, Picture, repeated};
 use luthier_manifest::{MapSlot, ShadingModel};
 use luthier_material::{Effects, FlakeSource, Glitter, Material, PictureRef, TexelUse, VariationSource};
 use luthier_optics::Rgb;
-use luthier_optics::schlick::{DIELECTRIC_F0, F82};
+use luthier_optics::schlick::{DIELECTRIC_F0, DIELECTRIC_INDEX, F82};
 use luthier_optics::stack::Base;
 use luthier_terminal::{Failure, Outcome};
 
@@ -162,7 +162,7 @@ pub(crate) fn add_layers(
             }
             None => Mix { metal: color, tint, dielectric, matt: color, metallic: metal },
         };
-        let (curves, albedo) = mix.surface();
+        let (curves, albedo) = mix.surface(model.map_or(DIELECTRIC_INDEX, index_of_engine));
         if place.layers.len() <= layer {
             place.layers.resize(layer + 1, LayerSample::NONE);
         }

@@ -86,7 +86,8 @@ pub(crate) fn sweep(subject: &Subject, what: Sweep, kind: &Kind, options: &EvalO
     let model = own.as_deref().unwrap_or(subject.model.as_ref());
     let function = (what == Sweep::Albedo).then(|| Function::new(subject, kind));
     // A furnace and an environment are of all layers; a coat with a weight is a blend of two surfaces.
-    let bare = subject.weight.map(|weight| (weight, at(&subject.material.bare_stack(), wavelength_nm)));
+    let bare =
+        subject.weight.map(|weight| (weight, at(&subject.material.bare(&subject.material.stack), wavelength_nm)));
     let of_stack = |stack: &_, wo| match what {
         Sweep::Albedo | Sweep::Furnace => single(furnace(model, stack, wo)),
         Sweep::Environment => {

@@ -9,6 +9,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::{Ior, IorSample};
+use luthier_optics::schlick::DIELECTRIC_INDEX;
 use luthier_optics::stack::{Base, Distribution, Film, FilmThickness, Layer, Stack, Surface};
 
 use crate::effects::layer_sample::LayerSample;
@@ -22,7 +23,7 @@ use crate::models::shade::Under;
 use crate::models::statistics::diffuse_base::Veil;
 use crate::models::statistics::energy::Energy;
 use crate::terms::Terms;
-use crate::twins::real_time::Twin;
+use crate::twins::real_time::{Twin, seen_by};
 use crate::twins::terms::Exact;
 
 /// Values of textures and effects at one place of a surface: `LuthierPlace` of the shaders.
@@ -77,6 +78,11 @@ impl Place {
         let bare = Self { sample, under, layers, ..coated.clone() };
         Some((weight, coated, bare))
     }
+}
+
+/// Index by which the interface of a `metallic-roughness` surface bends light, over that above, as a model sees it.
+pub fn index_of_engine(model: ShadingModel) -> f64 {
+    if model.is_fitted() { DIELECTRIC_INDEX } else { 1.0 }
 }
 
 /// Layers that a weight leaves bare, where these have lobes of their own.
@@ -214,6 +220,7 @@ impl Shaded {
         place: &Place,
         parts: Parts,
     ) -> Option<Self> {
+        let stack = &*seen_by(model, stack);
         let side = place.side.filter(|side| model.is_fitted() && side.is_of(stack));
         if let Some((side, (weight, coated, bare))) = side.zip(place.sides()) {
             let exact =

@@ -349,16 +349,18 @@ fn luthier_metallic_place(place: LuthierPlace, material: u32, base_color: vec3<f
     //? else
     let dielectric = vec3<f32>(0.04);
     let f0 = dielectric + metallic * (metal - dielectric);
+    // Of what it does not reflect, 1 / eta^2 is let through from below.
+    let left = luthier_materials[first].z;
     let shown = matt * (1.0 - metallic);
     //? own_edge
     {
         // Schlick's formula has (6/7)^5 = 0.46266436 at a cosine of 1/7, where the tint is that of the metal.
         let edge = (metal + (1.0 - metal) * 0.46266436) * luthier_materials[first + $word_base].xyz;
         // The correction cos (1 - cos)^6 is 1 / 17.651385 there, and 1/126 on average.
-        let passed = (1.0 - f0) * (20.0 / 21.0) + metallic * edge * (17.651385 / 126.0);
+        let passed = ((1.0 - f0) * (20.0 / 21.0) + metallic * edge * (17.651385 / 126.0)) * (left * left);
     }
     //? else
-    let passed = (1.0 - f0) * (20.0 / 21.0);
+    let passed = (1.0 - f0) * (20.0 / 21.0 * left * left);
     var next = place;
     next.base_color = shown / max(passed + shown * (1.0 - passed), vec3<f32>(1e-20));
     //? lobes_metallic

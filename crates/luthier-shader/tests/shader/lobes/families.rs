@@ -136,6 +136,7 @@ pub(super) fn material(family: Family) -> MaterialEntry {
         kind: LayerKind::Dielectric,
         alpha: ALPHAS[1],
         alpha_xy: [ALPHAS[1]; 2],
+        eta: INDEX,
         f0: Some(F0),
         metal_f82_tint: is_tinted.then_some(TINT),
         ior_n: F0,
@@ -236,6 +237,9 @@ fn with_f0(mut given: MaterialEntry, has_map: bool) -> MaterialEntry {
     }
     given
 }
+
+/// Index of the dielectric over that above.
+const INDEX: f64 = 1.5;
 
 /// Edge tint of a metal.
 const TINT: [f64; 3] = [0.2, 0.6, 0.9];
@@ -455,6 +459,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
                 tint: [1.0; 3],
                 metallic: 0.0,
                 dielectric,
+                index: INDEX,
                 albedo: wide,
                 depth,
                 film_factor: 1.0,

@@ -16,10 +16,12 @@
     }
 
     //? lobes_metallic, dielectric_f0
-    /// Share of the light of a diffuse base that is sent back to it below a coat and a dielectric of an F0: `sent_back` is it at an F0 of 0.04.
-    fn luthier_family_sent_back(sent_back: f32, f0: vec3<f32>) -> vec3<f32> {
+    /// Share of the light of a diffuse base that is sent back to it below a coat and a dielectric of an F0: `sent_back` is it at an F0 of 0.04, and `left_by_index` the
+    /// index of the coat over that of the dielectric.
+    fn luthier_family_sent_back(sent_back: f32, f0: vec3<f32>, left_by_index: f32) -> vec3<f32> {
         let known = 1.0 - LUTHIER_PLASTIC_PASSED;
-        let kept = saturate((sent_back - known) / (LUTHIER_PLASTIC_PASSED - (1.0 - sent_back) * known));
+        let left = (1.0 - sent_back) / (LUTHIER_PLASTIC_PASSED * left_by_index * left_by_index);
+        let kept = saturate((1.0 - left) / (1.0 - left * known));
         let average = f0 + (1.0 - f0) / 21.0;
         let passed = (1.0 - average) / max(1.0 - average * kept, vec3<f32>(0.02));
         return 1.0 - passed * ((1.0 - known * kept) / LUTHIER_PLASTIC_PASSED) * (1.0 - sent_back);
@@ -101,8 +103,10 @@
     }
 
     //? lobes_metallic
-    /// Share of diffuse light that an interface of an F0 of 0.04 lets through by Schlick's formula.
+    /// Shares of diffuse light that an interface of an F0 of 0.04 lets through by Schlick's formula: from above, and of that from below, which it bends by
+    /// the index 1.5.
     const LUTHIER_PLASTIC_PASSED: f32 = 0.9142857;
+    const LUTHIER_PLASTIC_LEFT: f32 = 0.4063492;
 
     /// A part of the row of a family: at a tile and a cosine, between this many tiles and the share of a place among those of the next node of the coat.
     fn luthier_family_part(row: vec2<f32>, beside: vec2<f32>, part: f32) -> vec4<f32> {
@@ -396,9 +400,9 @@
                 if place.metal.w >= 0.0 {
                     // It shows the colour of the place (Saunderson 1942).
                     //? dielectric_f0
-                    let entered = (1.0 - dielectric) * (20.0 / 21.0);
+                    let entered = (1.0 - dielectric) * (LUTHIER_PLASTIC_LEFT / 0.96);
                     //? else
-                    let entered = LUTHIER_PLASTIC_PASSED;
+                    let entered = LUTHIER_PLASTIC_LEFT;
                     passed = entered + diffuse * (1.0 - entered);
                 } else {
                     diffuse = luthier_family_albedo($place_argument header);
@@ -511,7 +515,7 @@
                 //? dielectric_f0
                 if base_layer > 0u && dot(abs(dielectric - vec3<f32>(0.04)), vec3<f32>(1.0)) > 0.0 {
                     let reflected = of_facet.y + luthier_family_once(of_once.xy, vec4<f32>(dielectric, 0.0)).rgb + luthier_family_more(of_more.rgb, dielectric);
-                    sent_back = luthier_family_sent_back(back, dielectric);
+                    sent_back = luthier_family_sent_back(back, dielectric, luthier_materials[base_word].z);
                     light = max(of_facet.x - reflected, vec3<f32>(0.0)) * (1.0 - sent_back);
                 }
             }
@@ -525,7 +529,16 @@
                 //? own_tints
                 depth *= own_coat.absorption_factors;
                 light *= exp(-of_lengths.x * depth);
-                sent_back *= exp(-of_lengths.y * depth);
+                // What the dielectric itself sends back does not pass the slab.
+                //? dielectric_f0
+                {
+                    let left = luthier_materials[base_word].z;
+                    let kept_by_base = 1.0 - LUTHIER_PLASTIC_PASSED * (left * left);
+                }
+                //? else
+                let kept_by_base = 1.0 - LUTHIER_PLASTIC_LEFT;
+                let own_share = select(0.0, clamp(kept_by_base / max(back, 1e-6), 0.0, 0.98), base_layer > 0u);
+                sent_back *= own_share + (1.0 - own_share) * exp(-of_lengths.y * depth);
                 once *= exp(-of_lengths.z * depth);
                 // Trapped light passes the slab again before each visit.
                 //? dielectric_f0

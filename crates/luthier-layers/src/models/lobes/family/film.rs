@@ -128,11 +128,12 @@ impl FilmLight {
 
 /// Share of the light of a diffuse base that is sent back to it below a coat, where the dielectric between has an F0: `sent_back` is it at the F0 that rows know.
 ///
-/// Light that goes up leaves with the share `(1 - f) (1 - k) / (1 - f k)`, where f is the mean reflectance of the dielectric, and k that of the coat from
-/// inside.
-pub(super) fn sent_back_below_coat(sent_back: f64, f0: f64) -> f64 {
+/// Light that goes up leaves with the share `(1 - f) (1 - k) / (n^2 (1 - f k))`, where f is the mean reflectance of the dielectric from above, n its index over that
+/// of the coat, and k the mean reflectance of the coat from inside.
+pub(super) fn sent_back_below_coat(sent_back: f64, f0: f64, index: f64) -> f64 {
     let known = schlick_average(DIELECTRIC_F0);
-    let kept = ((sent_back - known) / (1.0 - known - (1.0 - sent_back) * known)).clamp(0.0, 1.0);
+    let left = (1.0 - sent_back) * index * index / (1.0 - known);
+    let kept = ((1.0 - left) / (1.0 - left * known)).clamp(0.0, 1.0);
     let passed = |f: f64| (1.0 - f) / (1.0 - f * kept).max(ENTERING_MIN);
     1.0 - passed(schlick_average(f0)) / passed(known) * (1.0 - sent_back)
 }

@@ -17,7 +17,7 @@ fn filmed(ior: f64, nm: f64) -> Stack {
     let film = Film { ior: Ior::constant(ior, 0.0).unwrap(), thickness: FilmThickness { min_nm: nm, max_nm: nm } };
     let surface = Surface::isotropic(Distribution::Ggx, 0.5);
     let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
-    let interface = Base::Dielectric { ior: Ior::vacuum().with_f0([0.04; 3]), slab };
+    let interface = Base::Dielectric { ior: Ior::engine(&Ior::vacuum()).with_f0([0.04; 3]), slab };
     let diffuse = Base::Diffuse(Diffuse { albedo: [0.5; 3], sigma: 0.0 });
     let layers = vec![
         Layer { films: vec![film], surface, base: interface },
@@ -68,14 +68,14 @@ fn films_in_closed_form_are_those_of_the_simulation() {
 /// The stack below a coat.
 fn coated(alpha: f64, below: Stack) -> Stack {
     let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
-    let base = Base::Dielectric { ior: Ior::constant(1.5, 0.0).unwrap(), slab };
+    let clear = Ior::constant(1.5, 0.0).unwrap();
+    let base = Base::Dielectric { ior: clear.clone(), slab };
     let coat = Layer { films: Vec::new(), surface: Surface::isotropic(Distribution::Ggx, alpha), base };
     let layers = [coat].into_iter().chain(below.layers).map(|mut layer| {
-        // The dielectric bends no light below the coat.
         if let Base::Dielectric { ior, .. } = &mut layer.base
             && let Some(f0) = ior.f0()
         {
-            *ior = Ior::constant(1.5, 0.0).unwrap().with_f0(f0);
+            *ior = Ior::engine(&clear).with_f0(f0);
         }
         layer
     });

@@ -4,7 +4,9 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
 
-use super::paint::{AROUND_SPREADS, MORE_SPREAD, chain, chain_numbers, dimmed, trapped, trapped_numbers};
+use super::paint::{
+    AROUND_SPREADS, MORE_SPREAD, base_index, chain, chain_numbers, dimmed, kept_by_base, trapped, trapped_numbers,
+};
 use super::trace::{BETWEEN, DEPTH, Energies, HALF_TINT, Node, Rest, SHADES};
 use super::{Family, WHITE};
 use crate::models::lobes::fit::{Found, indices, seen_from};
@@ -55,7 +57,8 @@ impl Family {
             let own = base.map_or([0.0; 3], |base| base.albedo);
             let seen = if self.is_metallic { [WHITE; 3] } else { own };
             sent_back.push(internal_of(&node.rest, seen, |energies| energies.clear)[0]);
-            let rows = self.rows(&node, &found, spreads, (axis, index, self.alphas(number)[0]), falloff, seen);
+            let media = [index, base_index(&stack)];
+            let rows = self.rows(&node, &found, spreads, (axis, media, self.alphas(number)[0]), falloff, seen);
             beside[number] = Some(found);
             nodes.push(Lobes {
                 first: first.clone(),
@@ -84,7 +87,7 @@ impl Family {
         node: &Node,
         found: &[Found; 2],
         spreads: [f64; 2],
-        (axis, index, coat): (ViewAxis, f64, f64),
+        (axis, [index, base], coat): (ViewAxis, [f64; 2], f64),
         falloff: [f64; 2],
         albedo: Rgb,
     ) -> Vec<Row> {
@@ -92,7 +95,11 @@ impl Family {
         let dimmed = internal_of(&node.rest, albedo, |energies| energies.dimmed);
         // All channels have the same share, but those in which the base is black.
         let brightest = (0..3).max_by(|&a, &b| albedo[a].total_cmp(&albedo[b])).unwrap_or(0);
-        let around = -libm::log(ratio(dimmed[brightest], sent_back[brightest])) / DEPTH;
+        let passed = ratio(dimmed[brightest], sent_back[brightest]);
+        // Below a coat over a base that is metallic in places, light that the dielectric itself sends back passes no slab.
+        let is_apart = self.is_metallic && self.is_coated();
+        let kept = if is_apart { kept_by_base(sent_back[brightest], base) } else { 0.0 };
+        let around = -libm::log(((passed - kept) / (1.0 - kept)).max(PASSED_MIN)) / DEPTH;
         let energies: Vec<[Rgb; 2]> = node.rest.iter().map(|rest| self.reflected(rest)).collect();
         let lobes = [0, 1].map(|lobe: usize| {
             let energies: Vec<Rgb> = energies.iter().map(|energies| energies[lobe]).collect();
@@ -232,6 +239,9 @@ fn internal_of(views: &[Rest], albedo: Rgb, of: impl Fn(&Energies) -> Rgb) -> Rg
         if all > 0.0 && albedo[c] > 0.0 { ((all - once) / all / albedo[c]).clamp(0.0, 1.0) } else { 0.0 }
     })
 }
+
+/// Least share of light that a slab lets through of which there is a length.
+const PASSED_MIN: f64 = 1e-3;
 
 /// Least tail of a lobe: a tail this short is hardly one, and far from 0.
 const LEAST_TAIL: f64 = 0.05;

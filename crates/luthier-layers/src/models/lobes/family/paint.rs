@@ -2,11 +2,14 @@
 
 use glam::DVec3;
 use luthier_optics::Rgb;
-use luthier_optics::schlick::{DIELECTRIC_F0, F82, F82_COS_THETA, metallic_and_tinted, schlick};
+use luthier_optics::interface::Interface;
+use luthier_optics::ior::Ior;
+use luthier_optics::schlick::{DIELECTRIC_F0, F82, F82_COS_THETA, metallic_and_tinted, schlick, schlick_average};
 use luthier_optics::stack::{Base, Stack};
 
 use super::film::{FilmLight, sent_back_below_coat};
 use super::shares::spread_by;
+use super::trace::SODIUM_D_NM;
 use super::{Family, WHITE, base_interface};
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::Leaving;
@@ -23,6 +26,8 @@ pub struct Paint {
     pub metallic: f64,
     /// F0 of the dielectric, RGB.
     pub dielectric: Rgb,
+    /// Index of the dielectric over that above, by which it bends light.
+    pub index: f64,
     /// Albedo of the diffuse base, RGB.
     pub albedo: Rgb,
     /// Optical depth of the slab below the coat along the normal, RGB.
@@ -47,10 +52,10 @@ pub struct Mix {
 }
 
 impl Mix {
-    /// Curves of the reflectance of the interface of this base as one surface, and albedo of the diffuse base below it: as models other than `lobes` have it.
-    pub fn surface(&self) -> ([F82; 3], Rgb) {
+    /// Curves of the reflectance of the interface of this base as one surface, which bends light by an index, and albedo of the diffuse base below it.
+    pub fn surface(&self, index: f64) -> ([F82; 3], Rgb) {
         let curves = [0, 1, 2].map(|c: usize| F82 { f0: self.metal[c], tint: self.tint[c] });
-        metallic_and_tinted(curves, self.dielectric, self.matt, self.metallic)
+        metallic_and_tinted(curves, self.dielectric, self.matt, self.metallic, index)
     }
 }
 
@@ -78,14 +83,15 @@ impl Paint {
             _ => None,
         };
         let dielectric = dielectric.unwrap_or([DIELECTRIC_F0; 3]);
-        Self { metal, tint: [1.0; 3], metallic, dielectric, albedo, depth, film_factor: 1.0 }
+        let index = base_index(stack);
+        Self { metal, tint: [1.0; 3], metallic, dielectric, index, albedo, depth, film_factor: 1.0 }
     }
 
     /// These colours with a base of a `metallic-roughness` surface: a metal of an F0, and a dielectric whose diffuse base shows a colour, which is its
     /// share.
     #[must_use]
     pub fn mixed(self, mix: Mix) -> Self {
-        let (_, albedo) = Mix { metallic: 0.0, ..mix }.surface();
+        let (_, albedo) = Mix { metallic: 0.0, ..mix }.surface(self.index);
         let Mix { metal, tint, dielectric, metallic, .. } = mix;
         Self { metal, tint, metallic, dielectric, albedo, ..self }
     }
@@ -251,7 +257,7 @@ impl Family {
                     (light, sent_back, 0.0)
                 } else {
                     // What facets do not reflect enters.
-                    let sent_back = sent_back_below_coat(sent_back, f0);
+                    let sent_back = sent_back_below_coat(sent_back, f0, paint.index);
                     let entering = facet - white - once[1] - trapped(of_more, f0);
                     (entering.max(0.0) * (1.0 - sent_back), sent_back, trapped(of_more, f0 * again))
                 };
@@ -270,7 +276,10 @@ impl Family {
             }
         };
         let direct = light * passed(length) * paint.albedo[c];
-        let diffuse = direct / (1.0 - sent_back * passed(around) * paint.albedo[c]);
+        // What the dielectric itself sends back does not pass the slab.
+        let kept = if self.is_coated() { kept_by_base(self.back(alphas), paint.index) } else { 0.0 };
+        let sent_back = sent_back * (kept + (1.0 - kept) * passed(around));
+        let diffuse = direct / (1.0 - sent_back * paint.albedo[c]);
         // Trapped light passes the slab again before each visit: it is as dark as over a darker base. A dielectric of the F0 that rows know reflects hardly any.
         // Light that a coat keeps meets the metal flatly.
         let flat = at(if self.is_coated() { trapped_dip(alphas, cos_theta) } else { dip });
@@ -278,6 +287,23 @@ impl Family {
         [entering, white + mix(0.0, diffuse), once, more, mix(0.0, direct)]
     }
 }
+
+/// Index of the base of a stack over that above, 1 without an interface.
+pub(super) fn base_index(stack: &Stack) -> f64 {
+    let at = |ior: &Ior| ior.at(SODIUM_D_NM).re;
+    let interface = base_interface(stack).and_then(|number| Interface::of(stack, number));
+    interface.map_or(1.0, |interface| at(&interface.below) / at(&interface.above))
+}
+
+/// Share that the dielectric itself sends back, of all light of a diffuse base that is sent back to it below a coat: by that share and the index of the dielectric over that
+/// of the coat, at the F0 that rows know.
+pub(super) fn kept_by_base(sent_back: f64, index: f64) -> f64 {
+    let kept = 1.0 - (1.0 - schlick_average(DIELECTRIC_F0)) / (index * index);
+    (kept / sent_back.max(f64::MIN_POSITIVE)).clamp(0.0, KEPT_MAX)
+}
+
+/// Largest such share: all light would pass no slab, and have no length.
+const KEPT_MAX: f64 = 0.98;
 
 /// Spreads of the lengths of light that is sent back to a diffuse base, which is below the first interface, or below another one that sends some of it back before
 /// it comes to the slab: a slab of depth d lets `(1 + g d)^-spread` of it through. An exponential of the mean would be too bright in thin slabs, and too dark in

@@ -16,7 +16,7 @@ use crate::references::layered_mc::{ColorPaths, JointPath};
 pub(super) const SHADES: Rgb = [0.04, 0.5, 1.0];
 
 /// Wavelength at which indices bend directions where channels are shades.
-const SODIUM_D_NM: f64 = 589.3;
+pub(super) const SODIUM_D_NM: f64 = 589.3;
 
 /// Optical depth of the slab at which lengths of paths are measured.
 pub(super) const DEPTH: f64 = 0.5;

@@ -6,6 +6,7 @@ use luthier_optics::color::Color;
 use super::{NM, coat, layer, stack};
 use crate::models::lobes::{Family, FitSettings, Mix, Paint, Slopes, Varied, Varying};
 use luthier_optics::ior::Ior;
+use luthier_optics::schlick::DIELECTRIC_INDEX;
 use luthier_optics::stack::{Base, Diffuse, Slab};
 
 const DRAWN: u32 = 60_000;
@@ -17,12 +18,13 @@ const POINTS: usize = 40;
 /// Oracle: the density by a midpoint rule, and chi-square (a normal quantile by Wilson and Hilferty 1931). Bases are metal, plastic, mixed, and anisotropic.
 #[test]
 fn draws_at_places_of_a_family_follow_their_density() {
-    let clear = |n: f64| Base::Dielectric {
+    let plastic = |n: f64| Base::Dielectric {
         ior: Ior::constant(n, 0.0).unwrap().with_f0([0.04; 3]),
         slab: Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] },
     };
     let diffuse = Base::Diffuse(Diffuse { albedo: [0.5; 3], sigma: 0.0 });
-    let whole = stack(vec![layer(0.3, coat([0.0; 3])), layer(0.5, clear(1.5)), layer(0.0, diffuse)]);
+    let whole =
+        stack(vec![layer(0.3, coat([0.0; 3])), layer(0.5, plastic(1.5 * DIELECTRIC_INDEX)), layer(0.0, diffuse)]);
     let family = Family::new(&whole, [0.2, 0.4], [0.2, 0.6], true).unwrap();
     let settings = FitSettings { rows: 10, paths: 8000, seed: 5 };
     let color = Color::ThreeWavelengths(NM);

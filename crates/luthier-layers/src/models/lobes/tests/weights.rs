@@ -3,6 +3,7 @@
 use glam::DVec3;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
+use luthier_optics::schlick::DIELECTRIC_INDEX;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
 
 use super::{NM, coat, direction, layer, metal, stack};
@@ -96,7 +97,7 @@ fn weights_of_materials_are_bounded() {
 #[test]
 fn weights_at_places_of_a_family_are_bounded() {
     let interface = Base::Dielectric {
-        ior: Ior::constant(1.5, 0.0).unwrap().with_f0([0.04; 3]),
+        ior: Ior::constant(1.5 * DIELECTRIC_INDEX, 0.0).unwrap().with_f0([0.04; 3]),
         slab: Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] },
     };
     let whole = stack(vec![layer(0.3, coat([0.0; 3])), layer(0.5, interface), matt([0.5; 3])]);
