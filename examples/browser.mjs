@@ -1,6 +1,6 @@
 // Renders the page of an example in a Chromium without a window: node browser.mjs PAGE BAKE SCENE PNG
-// PAGE is the folder of the example. Without PNG it serves the page until it is stopped, for a browser with a window.
-// The environment variable CHROMIUM names the program.
+// PAGE is the folder of the example, or an HTML file in it. The page finds the folder of SCENE at /scene/. Without PNG it serves the page until it is
+// stopped, for a browser with a window. The environment variable CHROMIUM names the program.
 
 import { spawn } from "node:child_process";
 import { mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
@@ -17,14 +17,16 @@ if (!scene) {
   console.error("usage: node browser.mjs PAGE BAKE SCENE [PNG]");
   process.exit(2);
 }
+const isFile = page.endsWith(".html");
 const folders = [
   ["/bake/", path.resolve(bake)],
-  ["/", path.resolve(page)],
+  ["/scene/", path.dirname(path.resolve(scene))],
+  ["/", isFile ? path.dirname(path.resolve(page)) : path.resolve(page)],
 ];
 
 /** File behind a path of the page. */
 function find(url) {
-  if (url === "/") return path.resolve(page, "index.html");
+  if (url === "/") return isFile ? path.resolve(page) : path.resolve(page, "index.html");
   if (url === "/scene.json") return path.resolve(scene);
   const [prefix, folder] = folders.find(([prefix]) => url.startsWith(prefix));
   const file = path.resolve(folder, url.slice(prefix.length));

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Bakes materials/papers, renders the ball of examples/scene.json with wgpu, with three.js and in plain WebGL 2, and compares the pictures.
+# Bakes materials/papers, renders the ball of examples/scene.json with wgpu, with three.js and in plain WebGL 2, and compares the pictures. Of three.js also
+# .glb files with imported materials, against `luthier preview`.
 # With --bevy also with Bevy, whose first build takes a while. Needs a Vulkan driver, npm and Chromium; on Debian
 # apt-get install mesa-vulkan-drivers npm chromium. Pictures are left in target/examples/. The environment variable LUTHIER names
 # the program that bakes; by default cargo builds it.
@@ -57,6 +58,9 @@ step "three.js"
 npm ci --prefix examples/three --ignore-scripts --no-audit --no-fund --silent
 node examples/browser.mjs examples/three "$bake" "$(scene car-paint)" "$out/three.png"
 example difference "$out/wgpu-car-paint.png" "$out/three.png" "$limit"
+
+step "three.js, .glb files with textures"
+examples/three/compare.sh "$out/gltf"
 
 # Among others the records of the material lie beyond the first row of the material texture, and its rows elsewhere in the tables.
 step "the same material in a library"

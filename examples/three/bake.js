@@ -9,9 +9,12 @@ export class Bake {
     const manifest = await (await get(new URL("manifest.json", url))).json();
     if (manifest.schema !== 4) throw new Error(`this program reads schema 4 of the manifest, not ${manifest.schema}`);
     const bake = new Bake();
+    bake.url = url;
+    bake.manifest = manifest;
     bake.materials = manifest.materials.map((material) => material.name);
 
     const shader = manifest.shaders.find(({ target, form }) => target === "glsl-es300" && form === "baked");
+    bake.interface = shader.interface;
     bake.glsl = await (await get(new URL(shader.file.path, url))).text();
 
     // Texels are not in a format of Basis Universal: the loader needs no transcoder, but insists on this call.

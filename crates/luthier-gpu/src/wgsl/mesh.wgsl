@@ -84,7 +84,7 @@ fn mesh_nearest(origin: vec3<f32>, ray: vec3<f32>, farthest: f32, is_shadow: boo
         for (var i = 0u; i < count; i++) {
             let number = head.z + (leaf >> 3u) + i;
             let triangle = bitcast<vec4<u32>>(kernel_inputs.words[number]);
-            if is_shadow && triangle.w > 0u {
+            if is_shadow && triangle.w >= MESH_PLAIN {
                 continue;
             }
             // Corners across the ray: edges that triangles have in common have sums that differ in sign alone, so that no ray slips through.

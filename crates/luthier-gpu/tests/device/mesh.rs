@@ -170,6 +170,20 @@ fn lights_are_hidden_by_what_is_nearer_alone() {
     assert!((lit / expected - 1.0).abs() < 0.03, "{lit} {expected}");
 }
 
+/// The shadow of a sphere is that of any material, not that of the first one alone.
+#[test]
+fn parts_of_every_material_cast_shadows() {
+    let Some(scene) = scene_of(vec![vec![diffuse([1.0; 3], 0.0)]], &[]) else { return };
+    let picture = |material: u32| {
+        let mut soup = over_floor(-1.0);
+        soup.triangles.iter_mut().for_each(|triangle| triangle.material = material);
+        let lights = sun([-0.48, 0.64, 0.6], [1.0; 3]);
+        let settings = RenderSettings { lights, size: 32, camera: Shape::Mesh.camera(), ..dark() };
+        scene.render(&vec![0; material as usize + 1], &shown(soup, settings)).unwrap().data
+    };
+    assert!(picture(1) == picture(0));
+}
+
 #[test]
 fn what_needs_coordinates_is_refused_without_them() {
     let metal = |alpha_xy| vec![tiled(LayerRecord { alpha_xy, ..conductor(0.25, [0.1; 3], [9.0; 3]) }, Some(0))];
