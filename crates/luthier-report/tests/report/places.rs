@@ -1,6 +1,10 @@
 //! Materials that vary, at random places: shaders that ignore what varies, and rows of another stack.
 
+use glam::DVec3;
 use luthier_layers::models::lobes::{Critical, FitSettings, Varied, Varying};
+use luthier_layers::monochrome::Monochrome;
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
+use luthier_layers::twins::shaded::Place;
 use luthier_lut::{AtlasLayout, Image, Mapping, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{
     ColorMode, FileEntry, LobesRecord, MapEntry, MapSlot, PlaceValues, ShadingModel, VaryingFactor, VaryingRecord,
@@ -9,8 +13,8 @@ use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Distribution, Layer, Slab, Stack, Surface};
 use luthier_report::{
-    Asked, Device, Form, Pair, Places, Settings, SimulatedSettings, Subject, SurfaceMap, Weights, at_places, judge,
-    limits, simulated,
+    AlbedoSettings, Asked, Device, Form, Pair, Places, Settings, SimulatedSettings, Subject, SurfaceMap, Weights,
+    albedos, at_places, judge, limits, simulated,
 };
 
 use crate::fixture::{Bake, WAVELENGTHS_NM, axis, table};
@@ -226,4 +230,57 @@ fn rows_of_another_stack_break_the_budget() {
     assert!(limit.quantity.starts_with("lacquered-copper: ") && limit.quantity.contains("slab_factor"), "{limit:?}");
     let worst = wrong.misses().next().unwrap().words();
     assert!(worst.contains("slab_factor") && worst.contains("degrees") && worst.contains("albedo"), "{worst}");
+}
+
+/// By hand: centres of two texels are at a quarter and three quarters, and half way between them lie means.
+#[test]
+fn places_have_the_texels_of_their_coordinates() {
+    let (mut bake, maps) = textured();
+    let moved = bake.manifest.materials[0].maps.iter_mut().find(|map| map.slot == MapSlot::Thickness).unwrap();
+    moved.transform = Some([[1.0, 0.0, 0.5], [0.0, 1.0, 0.0]]);
+    let subject = Subject { maps, ..bake.subject() };
+    let places = Places::of(&subject, 0).unwrap();
+    let close = |found: f32, expected: f32| assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+    let least = places.at(&subject, 0, [0.25, 0.3]);
+    close(least.alpha_factor, 0.25);
+    close(least.slab_factor, 1.0);
+    assert_eq!((least.base_color, least.normal), (Some([0.1, 0.2, 0.3]), PlaceValues::NONE.normal));
+    let between = places.at(&subject, 0, [2.5, -0.7]);
+    close(between.alpha_factor, 0.75 * 0.75);
+    close(between.slab_factor, 0.55);
+    close(between.base_color.unwrap()[1], 0.5);
+}
+
+/// Oracles: the albedo of a diffuse formula in closed form, and that of the stack at one wavelength by other paths.
+#[test]
+fn albedos_are_means_over_places() {
+    let (bake, maps) = textured();
+    let subject = Subject { maps, ..bake.subject() };
+    let places = Places::of(&subject, 0).unwrap();
+    let matt = |share: f64| move |wi: DVec3, _: DVec3| [share * wi.z / std::f64::consts::PI; 3];
+    let here = [([0.25, 0.5], 0.2), ([0.75, 0.5], 0.6)].map(|(uv, share)| (places.at(&subject, 0, uv), matt(share)));
+    let settings = AlbedoSettings { thetas_deg: vec![0.0, 60.0], paths: 1 << 15, seed: 3 };
+    let found = albedos(&subject, 0, &here, &settings).unwrap();
+    let color = Place::NONE;
+    for (at, wo) in
+        found.iter().zip([0.0_f64, 60.0].map(|deg| DVec3::new(deg.to_radians().sin(), 0.0, deg.to_radians().cos())))
+    {
+        assert!(at.formula.iter().all(|albedo| (albedo - 0.4).abs() < 1e-4), "{at:?}");
+        for c in 0..3_usize {
+            let stacks = here.each_ref().map(|(values, _)| {
+                let mut place = color.clone();
+                place.sample.alpha_factor = values.alpha_factor.into();
+                place.sample.slab_factor = values.slab_factor.into();
+                place.base_color = values.base_color.map(|color| color.map(f64::from));
+                place.stack(&bake.stacks[0])
+            });
+            let exact = stacks.map(|stack| {
+                LayeredMc::new(InterfaceMode::SmithWalk)
+                    .albedo(&Monochrome::new(&stack, WAVELENGTHS_NM[c], c), wo, 1 << 14)
+                    .mean
+            });
+            let (mean, noise) = (0.5 * (exact[0] + exact[1]), at.std_err[c]);
+            assert!((at.simulated[c] - mean).abs() < 5.0 * noise && noise < 4e-3, "{at:?} {mean}");
+        }
+    }
 }
