@@ -13,7 +13,7 @@ use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Distribution, Layer, Slab, Stack, Surface};
 use luthier_report::{
-    AlbedoSettings, Asked, Device, Form, Pair, Places, Settings, SimulatedSettings, Subject, SurfaceMap, Weights,
+    AlbedoSettings, Asked, Device, Form, Pair, Places, Settings, SimulatedSettings, Site, Subject, SurfaceMap, Weights,
     albedos, at_places, judge, limits, simulated,
 };
 
@@ -283,4 +283,29 @@ fn albedos_are_means_over_places() {
             assert!((at.simulated[c] - mean).abs() < 5.0 * noise && noise < 4e-3, "{at:?} {mean}");
         }
     }
+}
+
+/// In a white furnace the light of a place is its albedo in every way, and a dark half of the surroundings takes half of what a matt formula shows.
+#[test]
+fn places_are_lit_as_their_albedos_say() {
+    let (bake, maps) = textured();
+    let subject = Subject { maps, ..bake.subject() };
+    let values = Places::of(&subject, 0).unwrap().at(&subject, 0, [0.5, 0.5]);
+    let matt = |wi: DVec3, _: DVec3| [0.4 * wi.z / std::f64::consts::PI; 3];
+    let wo = DVec3::new(0.6, 0.0, 0.8);
+    let site = Site::new(&subject, 0, &values).unwrap();
+    let settings = AlbedoSettings { thetas_deg: vec![libm::acos(0.8).to_degrees()], paths: 1 << 14, seed: 1 };
+    let albedo = albedos(&subject, 0, &[(values, matt)], &settings).unwrap()[0];
+    let alphas = [0.05 * 0.5625];
+    let lit = |radiance: &dyn Fn(DVec3) -> [f64; 3]| site.lit(&matt, &alphas, wo, radiance, 1 << 14, 5);
+    let white = lit(&|_| [1.0; 3]);
+    for (way, expected) in [(white.formula, [0.4; 3]), (white.model, albedo.model), (white.simulated, albedo.simulated)]
+    {
+        assert!(way.iter().zip(expected).all(|(way, expected)| (way - expected).abs() < 0.01), "{white:?} {albedo:?}");
+    }
+    let half = lit(&|wi| [if wi.y > 0.0 { 1.0 } else { 0.0 }; 3]);
+    assert!(
+        (half.formula[0] - 0.2).abs() < 0.01 && (half.simulated[0] / white.simulated[0] - 0.5).abs() < 0.03,
+        "{half:?}"
+    );
 }

@@ -4,4 +4,4 @@ mod audit;
 mod judgement;
 mod outdated;
 pub(crate) mod page;
-mod scene;
+pub(crate) mod scene;

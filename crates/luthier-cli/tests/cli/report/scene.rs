@@ -4,8 +4,9 @@ use serde_json::{Value, json};
 
 use crate::workshop::Workshop;
 
-/// A square of texture coordinates from 0 to 1, with three materials: a picture of black and white on a mirror, lacquer, and one that no triangle has.
-fn scene(mirror: &Value) -> String {
+/// A square of texture coordinates from 0 to 1 with some of three materials: a mirror of a given description, lacquer, and one whose picture is missing. The
+/// texels of texture 0 are black and white.
+pub(crate) fn scene(mirror: &Value, shown: &[u32]) -> String {
     let corners: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let mut bytes: Vec<u8> = corners.concat().iter().flat_map(|v| v.to_le_bytes()).collect();
     bytes.extend(corners.iter().flat_map(|[x, y, _]| [*x, *y]).flat_map(f32::to_le_bytes));
@@ -39,7 +40,7 @@ fn scene(mirror: &Value) -> String {
             },
             { "pbrMetallicRoughness": { "baseColorTexture": { "index": 1 }, "roughnessFactor": 0 } },
         ],
-        "meshes": [{ "primitives": [primitive(0), primitive(1)] }],
+        "meshes": [{ "primitives": shown.iter().map(|material| primitive(*material)).collect::<Vec<_>>() }],
         "nodes": [{ "mesh": 0 }],
         "scenes": [{ "nodes": [0] }],
         "scene": 0,
@@ -70,7 +71,7 @@ fn albedo(material: &Value, angle: usize, way: &str) -> [f64; 3] {
 /// Below a smooth coat glTF's formula has the coat's Schlick and the rest of the colour, whose interface reflects nothing; the layers mean the same colour.
 #[test]
 fn formulas_simulation_and_models_are_compared() {
-    let workshop = Workshop::with(&[("scene.gltf", &scene(&mirror()))]);
+    let workshop = Workshop::with(&[("scene.gltf", &scene(&mirror(), &[0, 1]))]);
     let report = workshop.run(&["report", "scene.gltf", "--reference=4096", "--json"]).exits(0).json();
     assert_eq!((report["scene"].as_str(), report["paths"].as_u64()), (Some("scene.gltf"), Some(4096)));
     let [mirror, lacquer, white] = report["materials"].as_array().unwrap().as_slice() else { panic!("{report}") };
@@ -117,12 +118,12 @@ fn formulas_simulation_and_models_are_compared() {
 #[test]
 fn broken_scenes_are_refused() {
     let nothing = "{\"asset\": {\"version\": \"2.0\"}, \"scenes\": [{}]}";
-    let wrong = scene(&json!({ "roughnessFactor": "rough" }));
+    let wrong = scene(&json!({ "roughnessFactor": "rough" }), &[0]);
     let workshop = Workshop::with(&[
         ("no.glb", "schema = 1\n"),
         ("nothing.gltf", nothing),
         ("wrong.gltf", &wrong),
-        ("m.gltf", &scene(&mirror())),
+        ("m.gltf", &scene(&mirror(), &[0, 1])),
     ]);
     workshop.run(&["report", "no.glb"]).fails(1, &["no.glb", "no glTF"]);
     workshop.run(&["report", "nothing.gltf"]).fails(1, &["nothing.gltf", "no materials"]);
@@ -131,4 +132,9 @@ fn broken_scenes_are_refused() {
     workshop.run(&["report", "m.gltf", "--out", "out"]).fails(2, &["--out"]);
     workshop.run(&["report", "m.gltf", "--max-error", "1"]).fails(2, &["--max-error"]);
     workshop.run(&["report", "m.toml"]).fails(1, &["m.toml", ".glb"]);
+    // Materials do without a mesh that cannot be read.
+    let compressed =
+        scene(&mirror(), &[0]).replacen('{', "{\"extensionsRequired\": [\"KHR_draco_mesh_compression\"],", 1);
+    workshop.write("packed.gltf", compressed);
+    workshop.run(&["report", "packed.gltf", "--reference=64"]).exits(0).says(&["packed.gltf", "places are all over"]);
 }
