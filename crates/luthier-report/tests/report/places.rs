@@ -261,23 +261,18 @@ fn albedos_are_means_over_places() {
     let here = [([0.25, 0.5], 0.2), ([0.75, 0.5], 0.6)].map(|(uv, share)| (places.at(&subject, 0, uv), matt(share)));
     let settings = AlbedoSettings { thetas_deg: vec![0.0, 60.0], paths: 1 << 15, seed: 3 };
     let found = albedos(&subject, 0, &here, &settings).unwrap();
-    let color = Place::NONE;
-    for (at, wo) in
-        found.iter().zip([0.0_f64, 60.0].map(|deg| DVec3::new(deg.to_radians().sin(), 0.0, deg.to_radians().cos())))
-    {
+    for at in &found {
+        let (sin, cos) = libm::sincos(at.theta_deg.to_radians());
+        let wo = DVec3::new(sin, 0.0, cos);
         assert!(at.formula.iter().all(|albedo| (albedo - 0.4).abs() < 1e-4), "{at:?}");
-        for c in 0..3_usize {
-            let stacks = here.each_ref().map(|(values, _)| {
-                let mut place = color.clone();
+        for (c, nm) in WAVELENGTHS_NM.into_iter().enumerate() {
+            let exact = here.each_ref().map(|(values, _)| {
+                let mut place = Place::NONE;
                 place.sample.alpha_factor = values.alpha_factor.into();
                 place.sample.slab_factor = values.slab_factor.into();
                 place.base_color = values.base_color.map(|color| color.map(f64::from));
-                place.stack(&bake.stacks[0])
-            });
-            let exact = stacks.map(|stack| {
-                LayeredMc::new(InterfaceMode::SmithWalk)
-                    .albedo(&Monochrome::new(&stack, WAVELENGTHS_NM[c], c), wo, 1 << 14)
-                    .mean
+                let stack = Monochrome::new(&place.stack(&bake.stacks[0]), nm, c);
+                LayeredMc::new(InterfaceMode::SmithWalk).albedo(&stack, wo, 1 << 14).mean
             });
             let (mean, noise) = (0.5 * (exact[0] + exact[1]), at.std_err[c]);
             assert!((at.simulated[c] - mean).abs() < 5.0 * noise && noise < 4e-3, "{at:?} {mean}");

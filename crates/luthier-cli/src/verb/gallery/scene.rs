@@ -80,6 +80,10 @@ pub(super) fn write(options: &GalleryOptions, path: &Path, output: &Path) -> Out
     let names: BTreeSet<&str> =
         used.iter().filter_map(|n| numbers.get(*n).map(|own| package.manifest.materials[*own].model.name())).collect();
     let model = names.into_iter().collect::<Vec<_>>().join(", ");
+    let mean = |of: fn(&Ways) -> [f64; 3]| lit.iter().map(|ways| of(ways).iter().sum::<f64>()).sum::<f64>();
+    let [of_formula, of_model, of_simulation] =
+        [mean(|ways| ways.formula), mean(|ways| ways.model), mean(|ways| ways.simulated)];
+    let less = |light: f64| 100.0 * (light / of_simulation.max(f64::MIN_POSITIVE) - 1.0);
     let pictures = pictures(&settings, &hits, &lit, samples);
     let (difference, factor, largest) = difference(&pictures[2], &pictures[1]);
     let [by_formula, by_model, simulated] = pictures;
@@ -91,11 +95,14 @@ pub(super) fn write(options: &GalleryOptions, path: &Path, output: &Path) -> Out
     ];
     format.write(output, luthier_report::sheet(&sheet, options.sheet.columns.unwrap_or(4)), look.tone.into())?;
     print(&format!(
-        "simulated less {model}: {factor} times its size about grey; 99 of 100 values are within {largest:.4}, noise of {paths} paths included"
+        "light of the whole file against the simulated: glTF's formula {:+.1}%, {model} {:+.1}%\nsimulated less {model}: {factor} times its size about grey; \
+         99 of 100 values are within {largest:.4}, noise of {paths} paths included",
+        less(of_formula),
+        less(of_model)
     ))
 }
 
-/// What the samples of all pixels see.
+/// Places that the samples of all pixels see.
 fn hits(mesh: &Mesh, settings: &RenderSettings) -> Vec<Hit> {
     let (size, samples) = (settings.size, settings.samples);
     let wide = |v: [f32; 3]| DVec3::from(v.map(f64::from));

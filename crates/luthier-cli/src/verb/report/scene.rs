@@ -22,14 +22,14 @@ use crate::store::store;
 /// Places of a material that varies.
 const PLACES: usize = 16;
 
-/// What was found of a material.
+/// Findings on a material.
 struct Found<'a> {
     imported: &'a Imported,
     model: &'static str,
     /// Distinct places that count.
     places: usize,
     albedos: Vec<AlbedosAt>,
-    /// What the formula leaves out.
+    /// Parts of the material that the formula leaves out.
     left_out: Vec<String>,
 }
 
@@ -153,17 +153,18 @@ fn json(path: &Path, settings: &AlbedoSettings, found: &[Found<'_>]) -> Value {
 }
 
 fn text(path: &Path, settings: &AlbedoSettings, found: &[Found<'_>]) -> String {
+    let counted =
+        |count: usize, what: &str| if count == 1 { format!("one {what}") } else { format!("{count} {what}s") };
     let mut out = format!(
-        "{}: albedos of {} materials in a white furnace, with {} paths from each angle\n",
+        "{}: albedos of {} in a white furnace, with {} paths from each angle\n",
         path.display(),
-        found.len(),
+        counted(found.len(), "material"),
         settings.paths
     );
     let rgb = |values: Rgb| values.map(|value| format!("{value:.3}")).join(" ");
     for Found { imported, model, places, albedos, left_out } in found {
-        let plural = if *places == 1 { "one place".to_owned() } else { format!("{places} places") };
         // Writing to a String does not fail.
-        let _ = writeln!(out, "\n{}, {plural}", imported.name);
+        let _ = writeln!(out, "\n{}, {}", imported.name, counted(*places, "place"));
         let _ = writeln!(out, "  {:>5}  {:17}  {:17}  {model}", "angle", "glTF's formula", "simulated");
         for at in albedos {
             let _ =
