@@ -26,7 +26,7 @@ The page needs no program and no network: it draws in any browser with WebGL 2. 
 
 PATH may be a glTF file: the sheet shows all of it by glTF's formula, by its models, simulated, and the simulation less the models, brightened about \
 grey. All four are computed in f64 without an adapter, with the textures of the file, under the surroundings alone, whose shadows are those of the mesh; \
-maps of normals and light from one place of the mesh to another are left out.
+normals of single layers, below a coat, and light from one place of the mesh to another are left out.
 
 Examples:
   luthier gallery -o sheet.png

@@ -120,20 +120,13 @@ impl Places {
     }
 
     /// The place at texture coordinates: texels of the maps, bilinear and repeated, and the film of a picture. Normals, flakes, particles and leans are left
-    /// out, because they turn the frame.
+    /// out, because they turn the frame: see [`Self::normal_at`].
     pub fn at(&self, subject: &Subject<'_>, material: usize, uv: [f64; 2]) -> PlaceValues {
-        let is_own = |map: &SurfaceMap| map.material as usize == material;
         let (mut place, _) = self.mapped(|slot, layer, _| {
             if matches!(slot, MapSlot::Normal | MapSlot::Bumps | MapSlot::FlakeNormal | MapSlot::Lean) {
                 return None;
             }
-            let map = subject.maps.iter().find(|map| is_own(map) && (map.slot, map.layer) == (slot, layer))?;
-            let stated = self.entry.maps.iter().find(|stated| (stated.slot, stated.layer) == (slot, layer));
-            let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
-            let rows = stated.and_then(|stated| stated.transform);
-            let uv = rows.map_or(uv, |rows| rows.map(|[u, v, one]| u * uv[0] + v * uv[1] + one));
-            let texel = filtered(map.picture.size(), uv, |x, y| map.picture.texel(x, y));
-            Some([0, 1, 2].map(|c: usize| factor[c] * texel[c]))
+            self.texel(subject, material, slot, layer, uv)
         });
         let film = subject.films.iter().find(|film| film.material as usize == material);
         let layer = film.and_then(|film| self.entry.layers.get(film.layer as usize));
@@ -143,6 +136,32 @@ impl Places {
             place.film_factor = (2.0 - most + 2.0 * (most - 1.0) * thick) as f32;
         }
         place
+    }
+
+    /// The normal that the map of the whole surface has at texture coordinates, in the frame of the surface.
+    pub fn normal_at(&self, subject: &Subject<'_>, material: usize, uv: [f64; 2]) -> DVec3 {
+        let maps = self.ranges.iter().filter(|(slot, ..)| *slot == MapSlot::Normal);
+        let texel = maps.map(|(slot, layer, _)| self.texel(subject, material, *slot, *layer, uv)).next().flatten();
+        texel.map_or(DVec3::Z, |[x, y, _]| DVec3::from(normal([x, y]).map(f64::from)))
+    }
+
+    /// The texel of a map at texture coordinates, times the number of the file.
+    fn texel(
+        &self,
+        subject: &Subject<'_>,
+        material: usize,
+        slot: MapSlot,
+        layer: Option<u32>,
+        uv: [f64; 2],
+    ) -> Option<[f64; 3]> {
+        let is_it = |map: &&SurfaceMap| map.material as usize == material && (map.slot, map.layer) == (slot, layer);
+        let map = subject.maps.iter().find(is_it)?;
+        let stated = self.entry.maps.iter().find(|stated| (stated.slot, stated.layer) == (slot, layer));
+        let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
+        let rows = stated.and_then(|stated| stated.transform);
+        let uv = rows.map_or(uv, |rows| rows.map(|[u, v, one]| u * uv[0] + v * uv[1] + one));
+        let texel = filtered(map.picture.size(), uv, |x, y| map.picture.texel(x, y));
+        Some([0, 1, 2].map(|c: usize| factor[c] * texel[c]))
     }
 
     /// The values that maps vary, and the lean of the base; `texel` is asked for the texel of each map.

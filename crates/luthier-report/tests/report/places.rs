@@ -249,6 +249,13 @@ fn places_have_the_texels_of_their_coordinates() {
     close(between.alpha_factor, 0.75 * 0.75);
     close(between.slab_factor, 0.55);
     close(between.base_color.unwrap()[1], 0.5);
+    // Texels .4 and .35 are -.2 and -.3.
+    let normal = places.normal_at(&subject, 0, [0.25, 0.3]);
+    assert!((normal - DVec3::new(-0.2, -0.3, 0.87_f64.sqrt())).length() < 1e-6, "{normal}");
+    assert_eq!(
+        Places::of(&Subject { maps: Vec::new(), ..subject.clone() }, 0).unwrap().normal_at(&subject, 0, [0.25; 2]),
+        DVec3::Z
+    );
 }
 
 /// Oracles: the albedo of a diffuse formula in closed form, and that of the stack at one wavelength by other paths.

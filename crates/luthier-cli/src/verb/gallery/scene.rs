@@ -40,7 +40,21 @@ struct Hit {
     position: DVec3,
     /// Tangent, bitangent, normal.
     frame: [DVec3; 3],
-    wo: DVec3,
+    /// The direction to the eye, not in the frame.
+    to_eye: DVec3,
+}
+
+impl Hit {
+    /// The frame about a normal that is given in the frame of the surface, and the direction to the eye in it, above the surface.
+    fn turned(&self, normal: DVec3) -> ([DVec3; 3], DVec3) {
+        let [t, b, n] = self.frame;
+        let normal = (normal.x * t + normal.y * b + normal.z * n).normalize();
+        let tangent = (t - t.dot(normal) * normal).normalize_or(normal.any_orthonormal_vector());
+        let across = normal.cross(tangent);
+        let bitangent = if across.dot(b) < 0.0 { -across } else { across };
+        let [x, y, z] = [tangent, bitangent, normal].map(|axis| axis.dot(self.to_eye));
+        ([tangent, bitangent, normal], DVec3::new(x, y, z.max(COS_MIN)).normalize())
+    }
 }
 
 /// Writes the sheet.
@@ -121,23 +135,22 @@ fn hits(mesh: &Mesh, settings: &RenderSettings) -> Vec<Hit> {
         let corners = triangle.corners.map(|i| &mesh.vertices()[i as usize]);
         let weights = [1.0 - b - c, b, c];
         let mean = |of: &dyn Fn(usize) -> DVec3| (0..3).map(|i| weights[i] * of(i)).sum::<DVec3>();
-        let wo = -ray;
-        let mut normal = mean(&|i| wide(corners[i].normal)).normalize_or(wo);
-        let tangent = mean(&|i| {
-            DVec3::new(corners[i].tangent[0].into(), corners[i].tangent[1].into(), corners[i].tangent[2].into())
-        });
-        let sign = f64::from(corners[0].tangent[3]);
-        if normal.dot(wo) < 0.0 {
+        let to_eye = -ray;
+        let mut normal = mean(&|i| wide(corners[i].normal)).normalize_or(to_eye);
+        if normal.dot(to_eye) < 0.0 {
             normal = -normal;
         }
+        let tangent = mean(&|i| {
+            let [x, y, z, _] = corners[i].tangent;
+            wide([x, y, z])
+        });
         let tangent = (tangent - tangent.dot(normal) * normal).normalize_or(normal.any_orthonormal_vector());
-        let bitangent = normal.cross(tangent) * if sign < 0.0 { -1.0 } else { 1.0 };
+        let bitangent = normal.cross(tangent) * if corners[0].tangent[3] < 0.0 { -1.0 } else { 1.0 };
         let frame = [tangent, bitangent, normal];
-        let local = DVec3::new(tangent.dot(wo), bitangent.dot(wo), normal.dot(wo).max(COS_MIN)).normalize();
         let uv = (0..3).map(|i| weights[i] * DVec2::from(corners[i].uv.map(f64::from))).sum::<DVec2>();
         let pixel = (y / samples * size + x / samples) as usize;
         let position = eye + f64::from(meeting.t) * ray;
-        Some(Hit { pixel, material: triangle.material as usize, uv: uv.to_array(), position, frame, wo: local })
+        Some(Hit { pixel, material: triangle.material as usize, uv: uv.to_array(), position, frame, to_eye })
     };
     (0..side * side).into_par_iter().filter_map(sample).collect()
 }
@@ -176,8 +189,9 @@ fn lit(
         let own = numbers[hit.material];
         let values = varied[hit.material].as_ref().map_or(PlaceValues::NONE, |all| all.at(subject, own, hit.uv));
         let site = Site::new(subject, own, &values).map_err(Failure::input)?;
-        let [t, b, n] = hit.frame;
-        let origin = (hit.position + 1e-3 * n).as_vec3().to_array();
+        let normal = varied[hit.material].as_ref().map_or(DVec3::Z, |all| all.normal_at(subject, own, hit.uv));
+        let ([t, b, n], wo) = hit.turned(normal);
+        let origin = (hit.position + 1e-3 * hit.frame[2]).as_vec3().to_array();
         let radiance = |wi: DVec3| {
             let direction = wi.x * t + wi.y * b + wi.z * n;
             match mesh.nearest(origin, direction.as_vec3().to_array()) {
@@ -188,7 +202,7 @@ fn lit(
         let coat = point.coat.map(|[_, alpha]| alpha);
         let alphas: Vec<f64> =
             [Some(point.alpha[1]), coat].into_iter().flatten().map(|alpha| alpha.max(ALPHA_MIN)).collect();
-        let ways = site.lit(&formula(point), &alphas, hit.wo, &radiance, count, number as u64);
+        let ways = site.lit(&formula(point), &alphas, wo, &radiance, count, number as u64);
         let done = done.fetch_add(1, Ordering::Relaxed) + 1;
         if done.is_multiple_of(64) {
             bar.set(done, hits.len() as u64);
@@ -244,6 +258,17 @@ fn difference(a: &Image, b: &Image) -> (Image, f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A normal that leans by .6 towards the tangent sees an eye there by the cosine .6, and the frame stays left-handed where it was.
+    #[test]
+    fn normals_of_maps_turn_frames() {
+        let frame = [DVec3::X, -DVec3::Y, DVec3::Z];
+        let hit = Hit { pixel: 0, material: 0, uv: [0.0; 2], position: DVec3::ZERO, frame, to_eye: DVec3::X };
+        let (turned, wo) = hit.turned(DVec3::new(0.6, 0.0, 0.8));
+        assert!((wo - DVec3::new(0.8, 0.0, 0.6)).length() < 1e-12 && (turned[1] + DVec3::Y).length() < 1e-12, "{wo}");
+        let (_, flat) = hit.turned(DVec3::Z);
+        assert!(flat.z > 0.0 && (flat.length() - 1.0).abs() < 1e-12);
+    }
 
     /// By hand: a difference of 1/16 is 8 times as large about grey, and equal pictures are grey.
     #[test]
