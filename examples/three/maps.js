@@ -73,7 +73,7 @@ function uncoloured({ constants, layers }) {
   const metallic = layers.some((layer) => layer.is_metal) ? 1 : 0;
   if (constants.brightening) return [constants.brightening.base_color, metallic];
   // Without metal, what the interface lets through decides the albedo of the base.
-  const passed = (0.96 * 20) / 21;
+  const passed = (0.96 * 20) / 21 / layers.at(-2).eta ** 2;
   return [layers.at(-1).albedo.map((albedo) => (albedo * passed) / (1 - albedo * (1 - passed))), metallic];
 }
 

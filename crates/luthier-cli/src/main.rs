@@ -9,7 +9,6 @@ mod interrupt;
 mod materials;
 #[cfg(feature = "gpu")]
 mod memory_bake;
-#[cfg(feature = "gpu")]
 mod meshes;
 mod model_inputs;
 mod numbers;

@@ -46,7 +46,7 @@ use std::io;
 
 pub use error::ImportError;
 pub use fate::{Fate, Line};
-pub use gltf::gltf;
+pub use gltf::{GltfPoint, GltfPoints, gltf, gltf_points};
 pub use mtlx::materialx;
 pub use physically_based::physically_based;
 

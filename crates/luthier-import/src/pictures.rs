@@ -24,10 +24,15 @@ impl Texels {
     }
 
     /// The texels at the place of one of another size: bilinear, and repeated.
-    pub(crate) fn at(&self, [u, v]: [f64; 2]) -> [f64; 4] {
+    pub(crate) fn at(&self, uv: [f64; 2]) -> [f64; 4] {
+        self.filtered(uv, |texel| texel)
+    }
+
+    /// The meaning of the texels at texture coordinates: bilinear, and repeated.
+    pub(crate) fn filtered(&self, [u, v]: [f64; 2], of: impl Fn([f64; 4]) -> [f64; 4]) -> [f64; 4] {
         let [(columns, s), (rows, t)] = [repeated(u, self.0.width), repeated(v, self.0.height)];
         let line = |y: u32| {
-            let [a, b] = columns.map(|x| self.texel(x, y));
+            let [a, b] = columns.map(|x| of(self.texel(x, y)));
             [0, 1, 2, 3].map(|c: usize| a[c] + (b[c] - a[c]) * s)
         };
         let [top, bottom] = rows.map(line);

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use glam::{DVec2, DVec3};
 use luthier::{read_materials, read_picture};
 use luthier_gpu::ToneMapping;
+use luthier_layers::engines::gltf;
 use luthier_layers::model::Model;
 use luthier_layers::models::lobes::{Family, Lobes, Mix, Paint, Slopes, Varied, Varying, shown};
 use luthier_layers::monochrome::Monochrome;
@@ -15,6 +16,7 @@ use luthier_lut::Image;
 use luthier_material::{Material, PictureRef, TexelUse};
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
+use luthier_optics::dielectric_albedo::JointMasking;
 use luthier_optics::sampling::split_mix::SplitMix64;
 use luthier_optics::stack::Stack;
 use luthier_report::{compare_pictures, sheet};
@@ -178,6 +180,7 @@ impl Subject {
             .collect();
         let lobes = self.lobes(&here)?;
         let lobes: Vec<_> = lobes.iter().filter_map(|(share, lobes)| Some((*share, lobes.prepare(wo)?))).collect();
+        let formula = gltf(&here);
         let mut random = SplitMix64::new(seed);
         let shift = [0; 3].map(|_: i32| random.unit());
         for i in 0..DIRECTIONS {
@@ -213,7 +216,7 @@ impl Subject {
                     add(2 + way, stacks.each_ref().map(|stack| share * model.eval(stack, wi, wo)));
                 }
             }
-            add(4, gltf(&here, wi, wo));
+            add(4, formula.eval(wi, wo));
         }
         Some(sums)
     }
@@ -229,29 +232,16 @@ fn texel((named, image): &(PictureRef, Image), uv: DVec2) -> [f32; 3] {
     [0, 1, 2].map(|c: usize| texel[c.min(texel.len() - 1)])
 }
 
-/// The formula of glTF 2.0, appendix B, with KHR_materials_clearcoat: `f cos_theta_i`.
-fn gltf(here: &Here, wi: DVec3, wo: DVec3) -> Rgb {
-    let half = (wi + wo).normalize();
-    let schlick = |cos: f64| {
-        let away = (1.0 - cos).clamp(0.0, 1.0);
-        (away * away) * (away * away) * away
-    };
-    let lobe = |alpha: f64| {
-        let square = (alpha * alpha).max(1e-6);
-        let below = half.z * half.z * (square - 1.0) + 1.0;
-        let root = |z: f64| (square + (1.0 - square) * z * z).sqrt();
-        square / (PI * below * below) * 0.5 / (wi.z * root(wo.z) + wo.z * root(wi.z))
-    };
-    let [coat, base] = here.slopes.map(Slopes::mean);
-    let (fresnel, specular) = (schlick(wo.dot(half)), lobe(base));
-    let weight = here.weight * (0.04 + 0.96 * schlick(wo.z));
-    here.color.map(|color| {
-        let metal = specular * (color + (1.0 - color) * fresnel);
-        let reflected = 0.04 + 0.96 * fresnel;
-        let matt = color / PI * (1.0 - reflected) + specular * reflected;
-        let surface = matt + here.mix.metallic * (metal - matt);
-        wi.z * (surface + weight * (lobe(coat) - surface))
-    })
+/// The material of glTF at a place, with the masking of viewers.
+fn gltf(here: &Here) -> gltf::Material {
+    let [alpha, base] = here.slopes.map(Slopes::mean);
+    gltf::Material {
+        base_color: here.color,
+        metallic: here.mix.metallic,
+        coat: Some(gltf::Coat { weight: here.weight, alpha }),
+        masking: JointMasking::Correlated,
+        ..gltf::Material::plastic(base)
+    }
 }
 
 /// Renders, as a picture and a page.
@@ -328,29 +318,3 @@ varnished-oak asks for a coat that does not darken its base (`darkening = false`
 | material | way | light | error | FLIP |
 |---|---|--:|--:|--:|
 ";
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// By hand, along the normal: D V = 1 / (4 pi alpha^2), .5 / pi of the colour, and .04 of light for the coat and for the surface.
-    #[test]
-    fn the_formula_of_gltf_along_the_normal() {
-        let mix = |metallic| Mix { metal: [0.5; 3], tint: [1.0; 3], dielectric: [0.04; 3], matt: [0.5; 3], metallic };
-        let here =
-            |metallic, weight| Here { color: [0.5; 3], mix: mix(metallic), weight, slopes: [0.1.into(), 0.5.into()] };
-        let found = |metallic, weight| gltf(&here(metallic, weight), DVec3::Z, DVec3::Z)[0];
-        for (metallic, weight, expected) in [
-            (0.0, 0.0, 0.152_788_745 + 0.012_732_395),
-            (1.0, 0.0, 0.159_154_943),
-            (0.0, 1.0, 0.165_521_140 + 0.04 * (7.957_747_155 - 0.165_521_140)),
-            (0.5, 0.5, 0.162_338_042 + 0.02 * (7.957_747_155 - 0.162_338_042)),
-        ] {
-            assert!(
-                (found(metallic, weight) - expected).abs() < 1e-8,
-                "{metallic} {weight}: {}",
-                found(metallic, weight)
-            );
-        }
-    }
-}

@@ -17,6 +17,7 @@
 //! | models | [`models`], each under its name; `lobes` are fitted to a reference |
 //! | above the models | [`effects`]: flakes, patina, particles, textures, fluorescence |
 //! | shaders | [`twins`]: models as shaders evaluate them, in three channels |
+//! | beside the models | [`engines`]: formulas of exchange formats, to compare with |
 //! | lists | [`registry`] of all models by name, [`domain`] of each |
 //!
 //! With the feature `fit`, `beam_fit` finds numbers of Granier and Heidrich's model for a lobe that values give.
@@ -35,6 +36,7 @@ pub mod beam_fit;
 pub mod directional_albedo;
 pub mod domain;
 pub mod effects;
+pub mod engines;
 pub mod formulas;
 pub mod frame;
 pub mod furnace;

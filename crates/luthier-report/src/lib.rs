@@ -94,7 +94,7 @@ pub use picture::ball::{BallPicture, DistantLight, render_ball, render_ball_of};
 pub use picture::flip::lightness_chroma_hue;
 pub use picture::{PIXELS_PER_DEGREE, PictureComparison, brightened_difference, compare_pictures, sheet};
 pub use places::{
-    AtPlaces, PLACE_FLOOR, PLACES_SEED, PlaceErrors, Places, Rows, SimulatedAt, SimulatedErrors, SimulatedSettings,
-    WorstPlace, at_places, simulated, simulated_by,
+    AlbedoSettings, AlbedosAt, AtPlaces, PLACE_FLOOR, PLACES_SEED, PlaceErrors, Places, Rows, SimulatedAt,
+    SimulatedErrors, SimulatedSettings, Site, Ways, WorstPlace, albedos, at_places, simulated, simulated_by,
 };
 pub use svg::{Curve, Plot, PlotAxis, PlotColor, Scatter, ScatterPanel, ScatterPoint};

@@ -24,8 +24,13 @@ Examples:
 const EXAMPLES: &str = "\
 The page needs no program and no network: it draws in any browser with WebGL 2. PATH may then be the folder of a bake, too.
 
+PATH may be a glTF file: the sheet shows all of it by glTF's formula, by its models, simulated, and the simulation less the models, brightened about \
+grey. All four are computed in f64 without an adapter, with the textures of the file, under the surroundings alone, whose shadows are those of the mesh; \
+normals of single layers, below a coat, and light from one place of the mesh to another are left out.
+
 Examples:
   luthier gallery -o sheet.png
+  luthier gallery car.glb -o ways.png --size 256
   luthier gallery materials mine.toml -o sheet.png --columns 6
   luthier gallery lacquer.toml -o grid.png --grid roughness=0.1..1 layer.1.albedo.0=0.1..0.9
   luthier gallery copper.toml -o grid.png --grid roughness=0..1 metallic=0..1
@@ -72,9 +77,9 @@ pub(crate) struct GalleryOptions {
     /// Models beside that of each material, to compare in the page. By default `belcour`, and `elek` for materials of that
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', requires = "html", value_parser = named::<ShadingModel>(ShadingModel::NAMES))]
     pub(crate) compare: Vec<ShadingModel>,
-    /// Simulate a picture of every material for the page on the graphics adapter, with so many samples of each pixel
+    /// Simulate a picture of every material for the page on the graphics adapter, with so many samples of each pixel; of a glTF file, so many paths in place of 256
     #[cfg(feature = "gpu")]
-    #[arg(long, value_name = "N", requires = "html", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub(crate) simulated: Option<u32>,
     #[cfg(feature = "gpu")]
     #[command(flatten)]

@@ -324,13 +324,50 @@ pub(crate) struct CheckOptions {
     pub(crate) json: bool,
 }
 
+/// Options of reports on bakes.
+#[cfg(feature = "gpu")]
+const OF_BAKES: [&str; 15] = [
+    "out",
+    "max_error",
+    "max_abs",
+    "max_delta_e",
+    "max_bytes",
+    "max_lobe",
+    "cost",
+    "stability",
+    "gallery",
+    "pairs",
+    "no_device",
+    "max_flip",
+    "picture_size",
+    "times",
+    "adapter",
+];
+#[cfg(not(feature = "gpu"))]
+const OF_BAKES: [&str; 11] = [
+    "out",
+    "max_error",
+    "max_abs",
+    "max_delta_e",
+    "max_bytes",
+    "max_lobe",
+    "cost",
+    "stability",
+    "gallery",
+    "pairs",
+    "no_device",
+];
+
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Exits with 1 when a limit is broken: of the command line, or a budget of a material file.\n\nExamples:\n  luthier report\n  \
+#[command(after_help = "Exits with 1 when a limit is broken: of the command line, or a budget of a material file.\n\n\
+                  Of a scene, albedos are means over places of the material's triangles, against the normal there. The formula is that of glTF 2.0, appendix B, \
+                  with KHR_materials_clearcoat, _ior, _specular and _anisotropy.\n\nExamples:\n  luthier report\n  \
                   luthier report --out build/luts --max-error 1e-3 --max-delta-e 1\n  luthier report --no-device --json\n  luthier report \
-                  --reference --cost cost.json --stability suite.json"
-)]
+                  --reference --cost cost.json --stability suite.json\n  luthier report car.glb\n  luthier report car.glb --reference=100000 --json")]
 pub(crate) struct ReportOptions {
+    /// A glTF file in place of a bake: for each of its materials the albedo in a white furnace by glTF's formula, by the simulation of the layers that it means, and by its model. Nothing is written
+    #[arg(value_name = "SCENE", conflicts_with_all = OF_BAKES)]
+    pub(crate) scene: Option<PathBuf>,
     /// Folder of the bake; the report goes into its folder report/
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub(crate) out: PathBuf,
@@ -353,7 +390,7 @@ pub(crate) struct ReportOptions {
     /// Exit with 1 when the lobe error of a model of the bake, against the reference, exceeds this
     #[arg(long, value_name = "X", value_parser = positive, allow_hyphen_values = true, requires = "reference")]
     pub(crate) max_lobe: Option<f64>,
-    /// Compare the models with a simulation of this many paths per view
+    /// Compare the models with a simulation of this many paths per view; of a scene 16384 unless given
     #[arg(long, value_name = "PATHS", num_args = 0..=1, default_missing_value = "1000", require_equals = true)]
     pub(crate) reference: Option<std::num::NonZeroU32>,
     /// Costs of shaders on gcn5, rdna2 and rdna3: the output of `luthier cost --json` for these materials

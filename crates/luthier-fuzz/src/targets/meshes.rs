@@ -50,4 +50,13 @@ pub(super) fn import(bytes: &[u8]) {
             assert!(import.pictures.contains_key(path), "{path} of {}", material.text);
         }
     }
+    // Of glTF the numbers at places, too.
+    let missing = |_: &str| Err(ErrorKind::NotFound.into());
+    let Ok(found) = luthier_import::gltf_points(bytes, &missing, &|_| vec![[0.3, 0.7], [-1e3, 1e3]]) else { return };
+    assert_eq!(found.len(), import.materials.len());
+    for point in found.iter().flat_map(|material| &material.points) {
+        let shares = point.base_color.iter().chain(&point.alpha).chain(&point.f0).chain(point.coat.iter().flatten());
+        assert!(shares.chain([&point.metallic, &point.specular]).all(|share| (0.0..=1.0).contains(share)), "{point:?}");
+        assert!(point.turn.is_finite(), "{point:?}");
+    }
 }

@@ -1,6 +1,7 @@
 //! Materials of glTF 2.0 files.
 
 mod document;
+mod points;
 mod surface;
 mod textures;
 
@@ -8,8 +9,10 @@ use std::io;
 
 use luthier_mesh::Asset;
 use serde::Deserialize;
+use serde_json::Value;
 
 use self::document::{Material, misplaced};
+pub use self::points::{GltfPoint, GltfPoints, gltf_points};
 use self::surface::surface;
 use self::textures::Textures;
 use crate::draft::plain;
@@ -29,27 +32,10 @@ const HARMLESS: [&str; 6] =
 /// [`ImportError`] for bytes that are not glTF, a material that is none, and a file without materials. A picture that cannot be read is a [`Line`] that says so.
 pub fn gltf(label: &str, bytes: &[u8], files: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Import, ImportError> {
     let asset = Asset::open(bytes, files)?;
-    let found = asset.json["materials"]
-        .as_array()
-        .filter(|found| !found.is_empty())
-        .ok_or(ImportError::Empty(String::new()))?;
     let mut textures = Textures::new(&asset);
     let mut names = Names::default();
     let mut import = Import::default();
-    for (number, value) in found.iter().enumerate() {
-        let source_name = plain(value["name"].as_str().unwrap_or_default());
-        let fail = |reason: String| ImportError::Material {
-            number,
-            name: if source_name.is_empty() { String::new() } else { format!(" `{source_name}`") },
-            reason,
-        };
-        if !value.is_object() {
-            return Err(fail("it is no object".to_owned()));
-        }
-        if let Some(name) = misplaced(value) {
-            return Err(fail(format!("`{name}` is no object")));
-        }
-        let material = Material::deserialize(value).map_err(|error| fail(with_line(&asset, &error)))?;
+    for (number, (source_name, material)) in materials(&asset)?.into_iter().enumerate() {
         let name = names.unique(&source_name, &format!("material-{number}"));
         let (mut draft, lines) = surface(&material, &mut textures);
         draft.name.clone_from(&name);
@@ -73,6 +59,31 @@ pub fn gltf(label: &str, bytes: &[u8], files: &dyn Fn(&str) -> io::Result<Vec<u8
     }
     import.pictures = textures.into_files();
     Ok(import)
+}
+
+/// The materials of a file, each with its name; at least one.
+fn materials(asset: &Asset<'_>) -> Result<Vec<(String, Material)>, ImportError> {
+    let found = asset.json["materials"]
+        .as_array()
+        .filter(|found| !found.is_empty())
+        .ok_or(ImportError::Empty(String::new()))?;
+    let material = |(number, value): (usize, &Value)| {
+        let source_name = plain(value["name"].as_str().unwrap_or_default());
+        let fail = |reason: String| ImportError::Material {
+            number,
+            name: if source_name.is_empty() { String::new() } else { format!(" `{source_name}`") },
+            reason,
+        };
+        if !value.is_object() {
+            return Err(fail("it is no object".to_owned()));
+        }
+        if let Some(name) = misplaced(value) {
+            return Err(fail(format!("`{name}` is no object")));
+        }
+        let material = Material::deserialize(value).map_err(|error| fail(with_line(asset, &error)))?;
+        Ok((source_name, material))
+    };
+    found.iter().enumerate().map(material).collect()
 }
 
 /// A mistake with its line and column in the text.

@@ -12,7 +12,7 @@ use crate::{Fate, Line};
 const COAT_IOR: f64 = 1.5;
 
 /// Shares, strengths and roughness.
-const UNIT: [f64; 2] = [0.0, 1.0];
+pub(super) const UNIT: [f64; 2] = [0.0, 1.0];
 
 /// Factors on the slope of normals.
 const NORMAL_SCALE: [f64; 2] = [0.0, 100.0];
@@ -28,6 +28,9 @@ const OF_HOST: [(&str, &str); 2] = [
     ("KHR_materials_emissive_strength", "light that the surface sends out itself"),
     ("KHR_materials_unlit", "how the material is drawn; its numbers are imported as those of a surface in light"),
 ];
+
+/// Their names.
+pub(super) const NONE_OF_REFLECTANCE: [&str; 2] = [OF_HOST[0].0, OF_HOST[1].0];
 
 /// Extensions that are lost, and what is lost with them.
 const LOST: [(&str, &str); 6] = [

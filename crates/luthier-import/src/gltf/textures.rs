@@ -155,11 +155,26 @@ fn table(path: &str, sources: [Option<&Texture>; 2]) -> String {
 
 /// The placement of a texture over texture coordinates, as TOML. glTF turns by the same angle the other way round: from v towards u.
 fn transform(texture: &Texture) -> Option<String> {
-    let Transform { offset, rotation, scale, .. } = texture.extensions.transform.as_ref()?;
-    let [offset, scale] = [offset, scale].map(|pair| pair.map(|v| if v.abs() < PLACED_MAX { v } else { 0.0 }));
-    let scale = scale.map(|v| if v.abs() * PLACED_MAX > 1.0 { v } else { 1.0 });
-    let rotation = libm::fmod(*rotation, std::f64::consts::TAU);
+    let Transform { offset, rotation, scale, .. } = shown(texture.extensions.transform.as_ref()?);
     rules::placement(offset, -rotation.to_degrees(), scale)
+}
+
+/// Texture coordinates in the placement of a texture.
+pub(super) fn placed(texture: &Texture, uv: [f64; 2]) -> [f64; 2] {
+    let Some(transform) = &texture.extensions.transform else { return uv };
+    let Transform { offset, rotation, scale, .. } = shown(transform);
+    let ([u, v], (sin, cos)) = ([scale[0] * uv[0], scale[1] * uv[1]], libm::sincos(rotation));
+    [cos * u + sin * v + offset[0], cos * v - sin * u + offset[1]]
+}
+
+/// A placement without numbers that are left out, see [`PLACED_MAX`].
+fn shown(transform: &Transform) -> Transform {
+    Transform {
+        offset: transform.offset.map(|v| if v.abs() < PLACED_MAX { v } else { 0.0 }),
+        rotation: libm::fmod(transform.rotation, std::f64::consts::TAU),
+        scale: transform.scale.map(|v| if v.abs() < PLACED_MAX && v.abs() * PLACED_MAX > 1.0 { v } else { 1.0 }),
+        tex_coord: transform.tex_coord,
+    }
 }
 
 /// Whether a placement has numbers that are left out: see [`PLACED_MAX`].

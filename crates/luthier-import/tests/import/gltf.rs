@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use luthier_import::{Fate, Import, ImportError, Imported, gltf};
+use luthier_import::{Fate, Import, ImportError, Imported, gltf, gltf_points};
 use luthier_material::{Material, parse};
 use serde_json::{Value, json};
 
@@ -320,4 +320,52 @@ fn broken_files_have_one_error() {
     let text = "{\"asset\": {\"version\": \"2.0\"}, \"materials\": [{}], \"extensionsRequired\": [\"FOO_bar\", \"KHR_texture_transform\"]}";
     let lines = gltf("x.gltf", text.as_bytes(), &none).unwrap().lines;
     assert_eq!(lines.iter().map(|line| line.property.as_str()).collect::<Vec<_>>(), ["FOO_bar"]);
+}
+
+/// By hand: texel 128 is 0.215861 by the sRGB curve and 0.501961 as it stands, and alpha is the square of the roughness. Texel 1 of the picture is white.
+#[test]
+fn points_have_factors_times_texels() {
+    let text = json!({
+        "asset": { "version": "2.0" },
+        "images": [picture([[128; 3], [255; 3]])],
+        "textures": [{ "source": 0 }],
+        "materials": [{
+            "name": "paint",
+            "pbrMetallicRoughness": {
+                "baseColorFactor": [0.5, 1, 2, 1], "baseColorTexture": { "index": 0 }, "metallicFactor": 0.5, "roughnessFactor": 0.8,
+                "metallicRoughnessTexture": { "index": 0, "extensions": { "KHR_texture_transform": { "offset": [0.5, 0] } } },
+            },
+            "extensions": {
+                "KHR_materials_clearcoat": { "clearcoatFactor": 1, "clearcoatTexture": { "index": 0 }, "clearcoatRoughnessFactor": 0.5 },
+                "KHR_materials_ior": { "ior": 2 },
+                "KHR_materials_specular": { "specularFactor": 0.25, "specularColorFactor": [1, 9, 20] },
+                "KHR_materials_anisotropy": { "anisotropyStrength": 0.5, "anisotropyRotation": 0.3 },
+                "KHR_materials_sheen": {}, "KHR_materials_unlit": {},
+            },
+        }, { "emissiveTexture": { "index": 7 }, "normalTexture": { "index": 7 } }, { "pbrMetallicRoughness": { "baseColorTexture": { "index": 7 } } }],
+    });
+    let places = |number: usize| if number == 0 { vec![[0.25, 0.5], [0.75, 0.5]] } else { vec![[0.0; 2]] };
+    let found = gltf_points(text.to_string().as_bytes(), &none, &places).unwrap();
+    let [dark, light] = found[0].points.as_slice() else { panic!("{found:?}") };
+    close(dark.base_color[0], 0.5 * 0.215_861);
+    close(dark.base_color[2], 0.215_861);
+    assert_eq!(light.base_color, [0.5, 1.0, 1.0]);
+    // Metal and roughness are half a picture ahead.
+    close(dark.metallic, 0.5);
+    close(light.metallic, 0.5 * 0.501_961);
+    close(dark.alpha[1], 0.64);
+    close(dark.alpha[0], 0.64 + 0.36 * 0.25);
+    close(light.alpha[1], 0.64 * 0.501_961 * 0.501_961);
+    assert_eq!((dark.turn, dark.specular), (0.3, 0.25));
+    close(dark.f0[0], 1.0 / 9.0);
+    assert_eq!([dark.f0[1], dark.f0[2]], [1.0; 2]);
+    close(dark.coat.unwrap()[0], 0.501_961);
+    assert_eq!(light.coat, Some([1.0, 0.25]));
+    assert_eq!(
+        (found[0].name.as_str(), found[0].left_out.as_slice()),
+        ("paint", &["KHR_materials_sheen".to_owned()][..])
+    );
+    assert!(found[1].left_out.is_empty(), "{:?}", found[1].left_out);
+    assert!(found[2].left_out[0].starts_with("baseColorTexture: "), "{:?}", found[2].left_out);
+    assert_eq!(found[2].points[0].base_color, [1.0; 3]);
 }

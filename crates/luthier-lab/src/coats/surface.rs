@@ -81,9 +81,11 @@ impl Surface {
     }
 }
 
-/// Cosines of a direction to the light and of one to the eye: against the normal, and of the half vector against the normal and either direction.
+/// A direction to the light and one to the eye, with their cosines against the normal, and those of the half vector against the normal and either direction.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pair {
+    pub(super) wi: DVec3,
+    pub(super) wo: DVec3,
     pub(super) i: f64,
     pub(super) o: f64,
     pub(super) h: f64,
@@ -95,6 +97,8 @@ impl Pair {
     pub(super) fn of(wi: DVec3, wo: DVec3) -> Option<Self> {
         let half = (wi + wo).normalize();
         (wi.z > 0.0 && wo.z > 0.0).then(|| Self {
+            wi,
+            wo,
             i: wi.z,
             o: wo.z,
             h: half.z.min(1.0),

@@ -3,19 +3,28 @@
 //! A chain of three is compared, each with the next: the shader on the device; the f64 evaluation of the tables that ship, at the same place ([`Rows`]);
 //! and the truth. For a model with closed terms the truth is exact terms at the place. For `lobes` it is the simulation of the stack that the material
 //! file means there ([`simulated`]).
+//!
+//! [`Site`] has both at one place that a caller names, and [`albedos`] compares them, and any other formula of the surface, in a white furnace. [`Site::lit`] has the light
+//! of all three under any surroundings.
 
+mod albedos;
+mod lit;
 mod ranges;
 mod rows;
 mod simulated;
+mod site;
 
 use luthier_manifest::{Form, PlaceValues};
 use luthier_optics::Rgb;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+pub use albedos::{AlbedoSettings, AlbedosAt, albedos};
+pub use lit::Ways;
 pub use ranges::Places;
 pub use rows::Rows;
 pub use simulated::{SimulatedAt, SimulatedErrors, SimulatedSettings, simulated, simulated_by};
+pub use site::Site;
 
 use crate::error::ReportError;
 use crate::measure::device::{Device, run_at};

@@ -5,13 +5,13 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use luthier_layers::effects::flakes::Flakes;
 use luthier_layers::effects::patina::Patina;
-use luthier_lut::{Image, Picture, TableKind};
+use luthier_lut::{Image, Picture, TableKind, repeated};
 use luthier_manifest::{FlakesRecord, Form, LayerValues, LiveEntry, LiveRange, MapSlot, MaterialEntry, PlaceValues};
 use luthier_optics::sampling::split_mix::{GOLDEN, SplitMix64, mix};
 use luthier_optics::schlick::{DIELECTRIC_F0, schlick_average};
 
 use crate::measure::references::shows_cover;
-use crate::measure::subject::Subject;
+use crate::measure::subject::{FilmMap, FilmSource, Subject, SurfaceMap};
 
 /// Quantities that vary over the surface of a material, with their ranges.
 #[derive(Debug, Clone)]
@@ -85,12 +85,97 @@ impl Places {
     /// The n-th random place of a seed.
     pub fn place(&self, seed: u64, n: u64) -> PlaceValues {
         let mut numbers = numbers(seed, n);
+        let (mut place, lean) = self.mapped(|_, _, range| Some(range.map(|range| numbers.between(range))));
+        let constants = &self.entry.constants;
+        if let Some(coat) = constants.coat.as_ref().filter(|_| self.has_free_weight()) {
+            // Up to the weight 1.
+            place.weight_factor = numbers.between([0.0, 1.0 / coat.weight.max(0.1)]) as f32;
+        }
+        if let Some([factor, x, y]) = self.film.map(|film| film.map(|range| numbers.between(range))) {
+            place.film_factor = factor as f32;
+            place.inner_normal = DVec3::new(x, y, 1.0).normalize().as_vec3().to_array();
+        }
+        if lean != UP {
+            // Slopes add up.
+            let [film, own] = [place.inner_normal, lean].map(|n| n.map(f64::from));
+            let [x, y] = [0, 1].map(|i: usize| film[i] / film[2] + own[i] / own[2]);
+            place.inner_normal = DVec3::new(x, y, 1.0).normalize().as_vec3().to_array();
+        }
+        let has_flake_map = self.ranges.iter().any(|(slot, ..)| *slot == MapSlot::FlakeNormal);
+        if let Some(flakes) = constants.flakes.filter(|_| !has_flake_map) {
+            // Twice the spread covers nineteen of twenty flakes.
+            let (angle, phi) = (2.0 * flakes.spread * numbers.unit(), TAU * numbers.unit());
+            let (sin, cos) = libm::sincos(angle.min(1.5));
+            let (sin_phi, cos_phi) = libm::sincos(phi);
+            place.flake_normal = tilted(&flakes, DVec3::new(sin * cos_phi, sin * sin_phi, cos));
+        }
+        if let Some(glitter) = constants.glitter {
+            let (lack, phi) = (numbers.unit() * (1.0 - libm::cos(glitter.tilt)), TAU * numbers.unit());
+            let across = (lack * (2.0 - lack)).sqrt();
+            let (sin, cos) = libm::sincos(phi);
+            if numbers.unit() < 0.5 {
+                place.normal = DVec3::new(across * cos, across * sin, 1.0 - lack).as_vec3().to_array();
+            }
+        }
+        place
+    }
+
+    /// The place at texture coordinates: texels of the maps, bilinear and repeated, and the film of a picture. Normals, flakes, particles and leans are left
+    /// out, because they turn the frame: see [`Self::normal_at`].
+    pub fn at(&self, subject: &Subject<'_>, material: usize, uv: [f64; 2]) -> PlaceValues {
+        let (mut place, _) = self.mapped(|slot, layer, _| {
+            if matches!(slot, MapSlot::Normal | MapSlot::Bumps | MapSlot::FlakeNormal | MapSlot::Lean) {
+                return None;
+            }
+            self.texel(subject, material, slot, layer, uv)
+        });
+        let film = subject.films.iter().find(|film| film.material as usize == material);
+        let layer = film.and_then(|film| self.entry.layers.get(film.layer as usize));
+        if let (Some(FilmMap { source: FilmSource::Image(image), .. }), Some(layer)) = (film, layer) {
+            let [thick, ..] = filtered([image.width, image.height], uv, |x, y| [image.texel(x, y)[0]; 4]);
+            let most = layer.film_thickness_max_nm / layer.film_thickness_nm;
+            place.film_factor = (2.0 - most + 2.0 * (most - 1.0) * thick) as f32;
+        }
+        place
+    }
+
+    /// The normal that the map of the whole surface has at texture coordinates, in the frame of the surface.
+    pub fn normal_at(&self, subject: &Subject<'_>, material: usize, uv: [f64; 2]) -> DVec3 {
+        let maps = self.ranges.iter().filter(|(slot, ..)| *slot == MapSlot::Normal);
+        let texel = maps.map(|(slot, layer, _)| self.texel(subject, material, *slot, *layer, uv)).next().flatten();
+        texel.map_or(DVec3::Z, |[x, y, _]| DVec3::from(normal([x, y]).map(f64::from)))
+    }
+
+    /// The texel of a map at texture coordinates, times the number of the file.
+    fn texel(
+        &self,
+        subject: &Subject<'_>,
+        material: usize,
+        slot: MapSlot,
+        layer: Option<u32>,
+        uv: [f64; 2],
+    ) -> Option<[f64; 3]> {
+        let is_it = |map: &&SurfaceMap| map.material as usize == material && (map.slot, map.layer) == (slot, layer);
+        let map = subject.maps.iter().find(is_it)?;
+        let stated = self.entry.maps.iter().find(|stated| (stated.slot, stated.layer) == (slot, layer));
+        let factor = stated.and_then(|stated| stated.factor).unwrap_or([1.0; 3]);
+        let rows = stated.and_then(|stated| stated.transform);
+        let uv = rows.map_or(uv, |rows| rows.map(|[u, v, one]| u * uv[0] + v * uv[1] + one));
+        let texel = filtered(map.picture.size(), uv, |x, y| map.picture.texel(x, y));
+        Some([0, 1, 2].map(|c: usize| factor[c] * texel[c]))
+    }
+
+    /// The values that maps vary, and the lean of the base; `texel` is asked for the texel of each map.
+    fn mapped(
+        &self,
+        mut texel: impl FnMut(MapSlot, Option<u32>, &[[f64; 2]; 3]) -> Option<[f64; 3]>,
+    ) -> (PlaceValues, [f32; 3]) {
         let mut place = PlaceValues::NONE;
         let constants = &self.entry.constants;
         let (mut color, mut metal, mut lean) = (None, None, UP);
         let is_metal = self.entry.layers.iter().any(|layer| layer.is_metal);
         for (slot, layer, range) in &self.ranges {
-            let drawn = range.map(|range| numbers.between(range));
+            let Some(drawn) = texel(*slot, *layer, range) else { continue };
             let [r, g, _] = drawn.map(|value| value as f32);
             let rgb = drawn.map(|value| value as f32);
             match slot {
@@ -135,41 +220,11 @@ impl Places {
                 }
             }
         }
-        if let Some(coat) = constants.coat.as_ref().filter(|_| self.has_free_weight()) {
-            // Up to the weight 1.
-            place.weight_factor = numbers.between([0.0, 1.0 / coat.weight.max(0.1)]) as f32;
-        }
         if color.is_some() || metal.is_some() {
             place.metallic =
                 Some((color.unwrap_or_else(|| self.base_color()), metal.unwrap_or(if is_metal { 1.0 } else { 0.0 })));
         }
-        if let Some([factor, x, y]) = self.film.map(|film| film.map(|range| numbers.between(range))) {
-            place.film_factor = factor as f32;
-            place.inner_normal = DVec3::new(x, y, 1.0).normalize().as_vec3().to_array();
-        }
-        if lean != UP {
-            // Slopes add up.
-            let [film, own] = [place.inner_normal, lean].map(|n| n.map(f64::from));
-            let [x, y] = [0, 1].map(|i: usize| film[i] / film[2] + own[i] / own[2]);
-            place.inner_normal = DVec3::new(x, y, 1.0).normalize().as_vec3().to_array();
-        }
-        let has_flake_map = self.ranges.iter().any(|(slot, ..)| *slot == MapSlot::FlakeNormal);
-        if let Some(flakes) = constants.flakes.filter(|_| !has_flake_map) {
-            // Twice the spread covers nineteen of twenty flakes.
-            let (angle, phi) = (2.0 * flakes.spread * numbers.unit(), TAU * numbers.unit());
-            let (sin, cos) = libm::sincos(angle.min(1.5));
-            let (sin_phi, cos_phi) = libm::sincos(phi);
-            place.flake_normal = tilted(&flakes, DVec3::new(sin * cos_phi, sin * sin_phi, cos));
-        }
-        if let Some(glitter) = constants.glitter {
-            let (lack, phi) = (numbers.unit() * (1.0 - libm::cos(glitter.tilt)), TAU * numbers.unit());
-            let across = (lack * (2.0 - lack)).sqrt();
-            let (sin, cos) = libm::sincos(phi);
-            if numbers.unit() < 0.5 {
-                place.normal = DVec3::new(across * cos, across * sin, 1.0 - lack).as_vec3().to_array();
-            }
-        }
-        place
+        (place, lean)
     }
 
     /// Base colour of a metallic-roughness surface without a map of it. Such a surface is no metal; the colour follows from its albedo, unless a
@@ -210,6 +265,17 @@ fn channel(image: &Image, channel: usize) -> [f64; 2] {
 fn texels(picture: &Picture, channel: usize) -> [f64; 2] {
     let values = picture.texels().map(|texel| f64::from(texel[channel]));
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+}
+
+/// A texel of a map of a size that repeats, bilinear, with the centres of texels at (i + 1/2) / size.
+fn filtered([width, height]: [u32; 2], uv: [f64; 2], texel: impl Fn(u32, u32) -> [f32; 4]) -> [f64; 4] {
+    let [(columns, s), (rows, t)] = [repeated(uv[0], width), repeated(uv[1], height)];
+    let line = |y: u32| {
+        let [a, b] = columns.map(|x| texel(x, y).map(f64::from));
+        [0, 1, 2, 3].map(|c: usize| a[c] + (b[c] - a[c]) * s)
+    };
+    let [top, bottom] = rows.map(line);
+    [0, 1, 2, 3].map(|c: usize| top[c] + (bottom[c] - top[c]) * t)
 }
 
 /// The unit normal of two numbers of a texel of a normal map, turned up to [`STEEPEST`] if it is steeper or impossible.

@@ -1,6 +1,10 @@
 //! Materials that vary, at random places: shaders that ignore what varies, and rows of another stack.
 
+use glam::DVec3;
 use luthier_layers::models::lobes::{Critical, FitSettings, Varied, Varying};
+use luthier_layers::monochrome::Monochrome;
+use luthier_layers::references::layered_mc::{InterfaceMode, LayeredMc};
+use luthier_layers::twins::shaded::Place;
 use luthier_lut::{AtlasLayout, Image, Mapping, RowBase, TableKind, TexelFormat};
 use luthier_manifest::{
     ColorMode, FileEntry, LobesRecord, MapEntry, MapSlot, PlaceValues, ShadingModel, VaryingFactor, VaryingRecord,
@@ -9,8 +13,8 @@ use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::stack::{Base, Distribution, Layer, Slab, Stack, Surface};
 use luthier_report::{
-    Asked, Device, Form, Pair, Places, Settings, SimulatedSettings, Subject, SurfaceMap, Weights, at_places, judge,
-    limits, simulated,
+    AlbedoSettings, Asked, Device, Form, Pair, Places, Settings, SimulatedSettings, Site, Subject, SurfaceMap, Weights,
+    albedos, at_places, judge, limits, simulated,
 };
 
 use crate::fixture::{Bake, WAVELENGTHS_NM, axis, table};
@@ -226,4 +230,84 @@ fn rows_of_another_stack_break_the_budget() {
     assert!(limit.quantity.starts_with("lacquered-copper: ") && limit.quantity.contains("slab_factor"), "{limit:?}");
     let worst = wrong.misses().next().unwrap().words();
     assert!(worst.contains("slab_factor") && worst.contains("degrees") && worst.contains("albedo"), "{worst}");
+}
+
+/// By hand: centres of two texels are at a quarter and three quarters, and half way between them lie means.
+#[test]
+fn places_have_the_texels_of_their_coordinates() {
+    let (mut bake, maps) = textured();
+    let moved = bake.manifest.materials[0].maps.iter_mut().find(|map| map.slot == MapSlot::Thickness).unwrap();
+    moved.transform = Some([[1.0, 0.0, 0.5], [0.0, 1.0, 0.0]]);
+    let subject = Subject { maps, ..bake.subject() };
+    let places = Places::of(&subject, 0).unwrap();
+    let close = |found: f32, expected: f32| assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+    let least = places.at(&subject, 0, [0.25, 0.3]);
+    close(least.alpha_factor, 0.25);
+    close(least.slab_factor, 1.0);
+    assert_eq!((least.base_color, least.normal), (Some([0.1, 0.2, 0.3]), PlaceValues::NONE.normal));
+    let between = places.at(&subject, 0, [2.5, -0.7]);
+    close(between.alpha_factor, 0.75 * 0.75);
+    close(between.slab_factor, 0.55);
+    close(between.base_color.unwrap()[1], 0.5);
+    // Texels .4 and .35 are -.2 and -.3.
+    let normal = places.normal_at(&subject, 0, [0.25, 0.3]);
+    assert!((normal - DVec3::new(-0.2, -0.3, 0.87_f64.sqrt())).length() < 1e-6, "{normal}");
+    assert_eq!(
+        Places::of(&Subject { maps: Vec::new(), ..subject.clone() }, 0).unwrap().normal_at(&subject, 0, [0.25; 2]),
+        DVec3::Z
+    );
+}
+
+/// Oracles: the albedo of a diffuse formula in closed form, and that of the stack at one wavelength by other paths.
+#[test]
+fn albedos_are_means_over_places() {
+    let (bake, maps) = textured();
+    let subject = Subject { maps, ..bake.subject() };
+    let places = Places::of(&subject, 0).unwrap();
+    let matt = |share: f64| move |wi: DVec3, _: DVec3| [share * wi.z / std::f64::consts::PI; 3];
+    let here = [([0.25, 0.5], 0.2), ([0.75, 0.5], 0.6)].map(|(uv, share)| (places.at(&subject, 0, uv), matt(share)));
+    let settings = AlbedoSettings { thetas_deg: vec![0.0, 60.0], paths: 1 << 15, seed: 3 };
+    let found = albedos(&subject, 0, &here, &settings).unwrap();
+    for at in &found {
+        let (sin, cos) = libm::sincos(at.theta_deg.to_radians());
+        let wo = DVec3::new(sin, 0.0, cos);
+        assert!(at.formula.iter().all(|albedo| (albedo - 0.4).abs() < 1e-4), "{at:?}");
+        for (c, nm) in WAVELENGTHS_NM.into_iter().enumerate() {
+            let exact = here.each_ref().map(|(values, _)| {
+                let mut place = Place::NONE;
+                place.sample.alpha_factor = values.alpha_factor.into();
+                place.sample.slab_factor = values.slab_factor.into();
+                place.base_color = values.base_color.map(|color| color.map(f64::from));
+                let stack = Monochrome::new(&place.stack(&bake.stacks[0]), nm, c);
+                LayeredMc::new(InterfaceMode::SmithWalk).albedo(&stack, wo, 1 << 14).mean
+            });
+            let (mean, noise) = (0.5 * (exact[0] + exact[1]), at.std_err[c]);
+            assert!((at.simulated[c] - mean).abs() < 5.0 * noise && noise < 4e-3, "{at:?} {mean}");
+        }
+    }
+}
+
+/// In a white furnace the light of a place is its albedo in every way, and a dark half of the surroundings takes half of what a matt formula shows.
+#[test]
+fn places_are_lit_as_their_albedos_say() {
+    let (bake, maps) = textured();
+    let subject = Subject { maps, ..bake.subject() };
+    let values = Places::of(&subject, 0).unwrap().at(&subject, 0, [0.5, 0.5]);
+    let matt = |wi: DVec3, _: DVec3| [0.4 * wi.z / std::f64::consts::PI; 3];
+    let wo = DVec3::new(0.6, 0.0, 0.8);
+    let site = Site::new(&subject, 0, &values).unwrap();
+    let settings = AlbedoSettings { thetas_deg: vec![libm::acos(0.8).to_degrees()], paths: 1 << 14, seed: 1 };
+    let albedo = albedos(&subject, 0, &[(values, matt)], &settings).unwrap()[0];
+    let alphas = [0.05 * 0.5625];
+    let lit = |radiance: &dyn Fn(DVec3) -> [f64; 3]| site.lit(&matt, &alphas, wo, radiance, 1 << 14, 5);
+    let white = lit(&|_| [1.0; 3]);
+    for (way, expected) in [(white.formula, [0.4; 3]), (white.model, albedo.model), (white.simulated, albedo.simulated)]
+    {
+        assert!(way.iter().zip(expected).all(|(way, expected)| (way - expected).abs() < 0.01), "{white:?} {albedo:?}");
+    }
+    let half = lit(&|wi| [if wi.y > 0.0 { 1.0 } else { 0.0 }; 3]);
+    assert!(
+        (half.formula[0] - 0.2).abs() < 0.01 && (half.simulated[0] / white.simulated[0] - 0.5).abs() < 0.03,
+        "{half:?}"
+    );
 }

@@ -16,6 +16,10 @@ use crate::verb::compare::ENVIRONMENT_SAMPLES;
 /// Renders many materials side by side.
 pub(super) fn write(options: &GalleryOptions, output: &Path) -> Outcome {
     let sheet = &options.sheet;
+    if options.simulated.is_some() {
+        let text = "--simulated is for pages and for glTF files: leave it out, or name a page by --html";
+        return Err(Failure::Usage(anyhow::anyhow!(text)));
+    }
     let format = Format::of(output)?;
     if sheet.shape == ShapeName::Grid {
         return Err(Failure::Input(anyhow::anyhow!(

@@ -11,6 +11,7 @@ use luthier_manifest::Form;
 use luthier_terminal::{Bar, Failure, Outcome, open};
 
 use crate::cli::{PreviewOptions, ShapeName};
+use crate::meshes::scene_file::is_scene;
 use crate::picture::{Format, settings};
 use crate::store::store;
 use crate::verb::compare::ENVIRONMENT_SAMPLES;
@@ -25,7 +26,7 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
     let shape = options.shape.unwrap_or(ShapeName::Model);
     let mut own = None;
     let (package, parts) = match named(options, shape)? {
-        Some(file) if scene::is_scene(file) => {
+        Some(file) if is_scene(file) => {
             let (package, parts, mesh) = scene::read(Path::new(file), &options.shading)?;
             own = Some(mesh);
             (package, parts)
@@ -102,7 +103,7 @@ const SCENE: &str = "a glTF file has its own shape and materials: leave out --sh
 fn named(options: &PreviewOptions, shape: ShapeName) -> Outcome<Option<&String>> {
     let text = match (&options.material, shape) {
         (None, ShapeName::Grid) => return Ok(None),
-        (Some(file), _) if scene::is_scene(file) => {
+        (Some(file), _) if is_scene(file) => {
             let has_own = options.shape.is_none() && options.mesh.is_none() && options.simulated.is_none();
             return if has_own { Ok(options.material.as_ref()) } else { Err(Failure::Usage(anyhow::anyhow!(SCENE))) };
         }

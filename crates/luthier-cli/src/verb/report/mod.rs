@@ -4,6 +4,7 @@ mod evidence;
 mod memory;
 #[cfg(feature = "gpu")]
 mod pictures;
+mod scene;
 #[cfg(feature = "gpu")]
 mod times;
 
@@ -26,6 +27,9 @@ use crate::store::store;
 
 /// Judges a bake and writes the report beside it.
 pub(crate) fn run(options: &ReportOptions) -> Outcome {
+    if let Some(scene) = &options.scene {
+        return scene::run(scene, options);
+    }
     // No bake is published while files of this one are read.
     let lock = shared(&options.out);
     let folder = Folder::open(&options.out)?;

@@ -1,7 +1,10 @@
 //! `gallery`.
 
+use luthier_lut::Image;
 use luthier_workshop::material_texts::{gold, lacquer, matte};
+use serde_json::json;
 
+use crate::report::scene::scene;
 use crate::workshop::Workshop;
 
 #[test]
@@ -115,4 +118,53 @@ fn a_page_warns_of_the_maps_that_it_does_not_show() {
     assert_eq!(page("plain.toml"), "");
     let bumps = "warning: bumpy: the page does not show the maps `bumps` of layer 0, `alpha` of layer 0\n";
     assert_eq!(page("bumpy.toml"), bumps);
+}
+
+/// Oracles by hand, under surroundings of radiance 1: a white mirror returns all of it in all ways, by paths and by directions, and the formula of lacquer
+/// returns the share of its smooth coat and the rest of its colour. Nothing is simulated on an adapter.
+#[test]
+fn a_scene_is_shown_in_four_ways() {
+    let mirror = json!({ "roughnessFactor": 0 });
+    let workshop = Workshop::with(&[("mirror.gltf", &scene(&mirror, &[0])), ("lacquer.gltf", &scene(&mirror, &[1]))]);
+    let white = Image { data: vec![1.0; 3 * 16 * 8], ..Image::zeros(16, 8, 3) };
+    workshop.write("white.exr", luthier_texture::exr::encode(&white, &luthier_texture::exr::RGB, &Vec::new()).unwrap());
+    let middles = |file: &str| {
+        let args = ["gallery", file, "-o", "ways.exr", "--size", "16", "--samples", "1", "--environment", "white.exr"];
+        let said = workshop.run(&[&args[..], &["--simulated", "4096"]].concat()).exits(0).stdout;
+        assert!(said.contains("about grey") && said.contains("4096 paths"), "{said}");
+        let (image, _) = luthier_texture::exr::decode(&std::fs::read(workshop.path("ways.exr")).unwrap()).unwrap();
+        assert_eq!((image.width, image.height), (4 * 24 + 8, 16 + 16 + 16));
+        [0, 1, 2, 3].map(|way: u32| [0, 1, 2].map(|c: usize| image.texel(24 * way + 16, 16)[c]))
+    };
+    for value in middles("mirror.gltf")[..3].iter().flatten() {
+        assert!((value - 1.0).abs() < 0.02, "{value}");
+    }
+    // The eye is 0.3 above the level of the square.
+    let share = 0.04 + 0.96 * libm::powf(1.0 - libm::cosf(0.3), 5.0);
+    let [formula, model, simulated, difference] = middles("lacquer.gltf");
+    for (found, color) in formula.iter().zip([0.5, 0.0, 1.0]) {
+        assert!((found - (share + (1.0 - share) * color)).abs() < 0.02, "{formula:?}");
+    }
+    assert!(
+        model.iter().zip(&simulated).all(|(model, simulated)| (model - simulated).abs() < 0.03),
+        "{model:?} {simulated:?}"
+    );
+    assert!(difference.iter().all(|value| (0.0..=1.0).contains(value)), "{difference:?}");
+}
+
+#[test]
+fn scenes_stand_alone() {
+    let workshop = Workshop::with(&[("m.toml", &matte("m")), ("car.gltf", &scene(&json!({}), &[0]))]);
+    let bad = |args: &[&str], code, parts: &[&str]| {
+        workshop.run(&[&["gallery"], args].concat()).fails(code, parts);
+    };
+    bad(&["car.gltf", "--html", "x.html"], 2, &["car.gltf", "import"]);
+    bad(&["car.gltf", "m.toml", "-o", "x.png"], 2, &["car.gltf", "import"]);
+    bad(&["car.gltf", "-o", "x.png", "--light", "1,1,1"], 2, &["--light"]);
+    bad(&["car.gltf", "-o", "x.gif"], 1, &["x.gif", ".png"]);
+    bad(&["none.glb", "-o", "x.png"], 3, &["none.glb"]);
+    bad(&["m.toml", "-o", "x.png", "--simulated", "8"], 2, &["--simulated", "--html"]);
+    workshop.write("no.glb", "schema = 1");
+    bad(&["no.glb", "-o", "x.png"], 1, &["no.glb", "no glTF"]);
+    assert!(!workshop.path("x.png").exists());
 }

@@ -4,3 +4,4 @@ mod audit;
 mod judgement;
 mod outdated;
 pub(crate) mod page;
+pub(crate) mod scene;

@@ -1,13 +1,23 @@
 //! Meshes that the command line names.
 
+pub(crate) mod judged;
+pub(crate) mod scene_file;
+
+#[cfg(feature = "gpu")]
 use std::path::Path;
 
-use luthier_export::input;
-use luthier_gpu::{Mesh, soup};
-use luthier_terminal::{Failure, Outcome, complain, files};
+#[cfg(feature = "gpu")]
+use luthier_gpu::Mesh;
+#[cfg(feature = "gpu")]
+use luthier_terminal::Outcome;
 
 /// Reads a glTF file, with the buffers beside it. Warnings name the parts that pictures do not show.
+#[cfg(feature = "gpu")]
 pub(crate) fn read(path: &Path) -> Outcome<Mesh> {
+    use luthier_export::input;
+    use luthier_gpu::soup;
+    use luthier_terminal::{Failure, complain, files};
+
     let bytes = input::mesh(path).map_err(files(path, "read"))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let unusable =
