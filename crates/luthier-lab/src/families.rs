@@ -11,7 +11,7 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::ior::Ior;
 use luthier_optics::sampling::split_mix::SplitMix64;
-use luthier_optics::schlick::DIELECTRIC_F0;
+use luthier_optics::schlick::{DIELECTRIC_F0, DIELECTRIC_INDEX};
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
 use luthier_report::{ModelSubject, Reference, Shown, ViewError};
 use luthier_terminal::{Bar, Failure, Outcome, deliver};
@@ -70,7 +70,7 @@ impl Group {
             slab: Slab { thickness_um: 1.0, absorption_per_um: tint },
         };
         let above = constant(if self == Self::Bare { 1.0 } else { COAT_INDEX }, 0.0);
-        let ior = Ior::engine(&above);
+        let ior = Ior::engine(&above, DIELECTRIC_INDEX);
         let plastic = Base::Dielectric {
             ior: ior.with_f0([DIELECTRIC_F0; 3]),
             slab: Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] },

@@ -113,7 +113,7 @@ impl Material {
         let is_in_air = model.is_path() && self.bake.lower_reflectance == Some(LowerReflectance::InAir);
         let here = if is_in_air { Cow::Owned(self.stack.with_lower_in_air()) } else { Cow::Borrowed(&self.stack) };
         let is_whole = model.is_fitted() || model.facts().family == Family::Coefficients;
-        if is_whole || !here.has_engine() { here } else { Cow::Owned(here.crossed_once()) }
+        if is_whole || !here.bends_in_engine() { here } else { Cow::Owned(here.crossed_once()) }
     }
 
     /// Numbers of the model `granier-heidrich`, if the file gives some that differ from [`BeamsRecord::PLAIN`].

@@ -4,7 +4,7 @@ use num_complex::Complex64;
 use thiserror::Error;
 
 use crate::Rgb;
-use crate::schlick::{DIELECTRIC_INDEX, F82};
+use crate::schlick::F82;
 
 /// One sample of a complex index `n + i k` (`k >= 0` absorbs; phase convention e^{+i beta}).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,7 +65,7 @@ pub struct Ior {
     samples: Vec<IorSample>,
     f0: Option<Rgb>,
     f82_tint: Rgb,
-    is_engine: bool,
+    over_above: Option<f64>,
     // Not stored: models make stacks with such indices from others, and nothing keeps them.
     #[cfg_attr(feature = "serde", serde(skip))]
     in_air: bool,
@@ -78,7 +78,7 @@ impl Ior {
             samples: vec![IorSample { wavelength_nm: 550.0, n: 1.0, k: 0.0 }],
             f0: None,
             f82_tint: [1.0; 3],
-            is_engine: false,
+            over_above: None,
             in_air: false,
         }
     }
@@ -110,20 +110,19 @@ impl Ior {
                 return Err(IorError::NotPhysical { wavelength_nm: s.wavelength_nm, n: s.n, k: s.k });
             }
         }
-        Ok(Self { samples, f0: None, f82_tint: [1.0; 3], is_engine: false, in_air: false })
+        Ok(Self { samples, f0: None, f82_tint: [1.0; 3], over_above: None, in_air: false })
     }
 
-    /// The index of a `metallic-roughness` surface: [`DIELECTRIC_INDEX`] times the real index of the medium above, whatever that is
-    /// ([`crate::stack::Stack::without_first`]).
+    /// The index of a `metallic-roughness` surface: a multiple of the real index of the medium above, whatever that is ([`crate::stack::Stack::without_first`]).
     #[must_use]
-    pub fn engine(above: &Self) -> Self {
-        let samples = above.samples.iter().map(|s| IorSample { n: s.n * DIELECTRIC_INDEX, k: 0.0, ..*s }).collect();
-        Self { samples, is_engine: true, ..Self::vacuum() }
+    pub fn engine(above: &Self, index: f64) -> Self {
+        let samples = above.samples.iter().map(|s| IorSample { n: s.n * index, k: 0.0, ..*s }).collect();
+        Self { samples, over_above: Some(index), ..Self::vacuum() }
     }
 
-    /// Whether it is that of a `metallic-roughness` surface.
-    pub fn is_engine(&self) -> bool {
-        self.is_engine
+    /// The index of a `metallic-roughness` surface over that of the medium above; `None` of any other medium.
+    pub fn of_engine(&self) -> Option<f64> {
+        self.over_above
     }
 
     /// The index of a medium whose interface reflects `f0 + (1 - f0)(1 - cos)^5` (Schlick 1994), by colour channel (linear Rec.709,

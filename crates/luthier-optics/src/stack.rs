@@ -9,7 +9,6 @@ use crate::Rgb;
 use crate::fresnel::FilmLayer;
 use crate::ior::Ior;
 use crate::ndf::Shape;
-use crate::schlick::DIELECTRIC_INDEX;
 
 /// A layered surface, from the exterior down.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,49 +34,54 @@ impl Stack {
         here
     }
 
-    /// The stack without its first layer. A `metallic-roughness` surface bends light as before, by [`DIELECTRIC_INDEX`] under what lies above.
+    /// The stack without its first layer. A `metallic-roughness` surface bends light as before, by its index over that of what lies above.
     #[must_use]
     pub fn without_first(&self) -> Self {
         let mut here = Self { exterior: self.exterior.clone(), layers: self.layers.iter().skip(1).cloned().collect() };
         if let Some(Base::Dielectric { ior, .. }) = here.layers.first_mut().map(|layer| &mut layer.base)
-            && let Some(curves) = ior.f82_rgb().filter(|_| ior.is_engine())
+            && let Some((index, curves)) = ior.of_engine().zip(ior.f82_rgb())
         {
-            *ior = Ior::engine(&self.exterior).with_f82(curves);
+            *ior = Ior::engine(&self.exterior, index).with_f82(curves);
         }
         here
     }
 
-    /// Whether it has a `metallic-roughness` surface over a diffuse base.
-    pub fn has_engine(&self) -> bool {
-        self.layers.iter().any(|layer| matches!(&layer.base, Base::Dielectric { ior, .. } if ior.is_engine()))
+    /// Whether it has a `metallic-roughness` surface that bends light.
+    pub fn bends_in_engine(&self) -> bool {
+        self.layers.iter().any(|layer| matches!(&layer.base, Base::Dielectric { ior, .. } if bent(ior).is_some()))
     }
 
     /// The stack as models see it that follow light down and up once: a `metallic-roughness` surface shows its colour by that light alone. Its interface bends
-    /// none, and the albedo of its diffuse base is `r / (n^2 - r (n^2 - 1))`, n being [`DIELECTRIC_INDEX`]: that of the base below such an interface which has the
-    /// colour of the base r.
+    /// none, and the albedo of its diffuse base is `r / (n^2 - r (n^2 - 1))`, n being the index by which it did: that of the base below such an interface which
+    /// has the colour of the base r.
     #[must_use]
     pub fn crossed_once(&self) -> Self {
         let mut here = self.clone();
         let mut above = self.exterior.clone();
-        let mut is_engine = false;
+        let mut index = None;
         for layer in &mut here.layers {
             match &mut layer.base {
                 Base::Dielectric { ior, .. } => {
-                    is_engine = ior.is_engine();
-                    if let Some(curves) = ior.f82_rgb().filter(|_| is_engine) {
-                        *ior = above.clone().with_f82(curves);
+                    index = bent(ior);
+                    if let Some((_, curves)) = index.zip(ior.f82_rgb()) {
+                        *ior = Ior::engine(&above, 1.0).with_f82(curves);
                     }
                     above = ior.clone();
                 }
-                Base::Diffuse(base) if is_engine => {
-                    let square = DIELECTRIC_INDEX * DIELECTRIC_INDEX;
+                Base::Diffuse(base) => {
+                    let square = index.map_or(1.0, |n| n * n);
                     base.albedo = base.albedo.map(|r| r / (square - r * (square - 1.0)));
                 }
-                _ => {}
+                Base::Conductor { .. } => {}
             }
         }
         here
     }
+}
+
+/// The index by which a `metallic-roughness` surface bends light, if it does.
+fn bent(ior: &Ior) -> Option<f64> {
+    ior.of_engine().filter(|index| *index != 1.0)
 }
 
 impl Stack {

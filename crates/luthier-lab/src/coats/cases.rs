@@ -2,7 +2,7 @@
 
 use luthier_optics::ior::Ior;
 use luthier_optics::sampling::split_mix::SplitMix64;
-use luthier_optics::schlick::metallic_roughness;
+use luthier_optics::schlick::{DIELECTRIC_INDEX, metallic_roughness};
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface as Facets};
 
 use super::surface::{INDEX, Surface};
@@ -103,7 +103,7 @@ impl Case {
             layers.push(layer(alpha, Base::Conductor { ior: clear().with_f0(color) }));
         } else {
             let above = if coat.is_some() { clear() } else { Ior::vacuum() };
-            let ior = Ior::engine(&above);
+            let ior = Ior::engine(&above, DIELECTRIC_INDEX);
             layers.push(layer(alpha, Base::Dielectric { ior: ior.with_f0(f0), slab }));
             let diffuse = Base::Diffuse(Diffuse { albedo, sigma: 0.0 });
             layers.push(Layer { films: Vec::new(), surface: Facets::smooth(), base: diffuse });

@@ -39,7 +39,7 @@ pub struct Twin {
 
 /// A stack as a model sees it: unless its light is simulated, of a `metallic-roughness` surface that light crosses once ([`Stack::crossed_once`]).
 pub(super) fn seen_by(model: ShadingModel, stack: &Stack) -> Cow<'_, Stack> {
-    if model.is_fitted() || !stack.has_engine() { Cow::Borrowed(stack) } else { Cow::Owned(stack.crossed_once()) }
+    if model.is_fitted() || !stack.bends_in_engine() { Cow::Borrowed(stack) } else { Cow::Owned(stack.crossed_once()) }
 }
 
 impl Twin {

@@ -36,7 +36,7 @@ pub(super) fn textured_conductor(
 
 /// An interface that bends light as the usual dielectric does, over a diffuse base of an albedo.
 fn over_diffuse(above: &Ior, (curves, albedo): ([F82; 3], Rgb), sigma: f64) -> (Base, Option<Diffuse>) {
-    let ior = Ior::engine(above).with_f82(curves);
+    let ior = Ior::engine(above, DIELECTRIC_INDEX).with_f82(curves);
     let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
     (Base::Dielectric { ior, slab }, Some(Diffuse { albedo, sigma }))
 }

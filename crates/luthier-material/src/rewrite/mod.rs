@@ -87,7 +87,7 @@ impl File<'_> {
         }
         if number == 1
             && self.original.is_bare_in_places()
-            && matches!(&before.base, Base::Dielectric { ior, .. } if ior.is_engine())
+            && matches!(&before.base, Base::Dielectric { ior, .. } if ior.of_engine().is_some())
         {
             return Err(("type", "the index of this layer follows from the medium above, which is not in all places"));
         }

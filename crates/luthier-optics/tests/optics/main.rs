@@ -7,6 +7,7 @@ mod albedo;
 mod brute_force;
 mod conservation;
 mod crossing;
+mod engine;
 mod films_on_f0;
 mod metals;
 mod sampling;

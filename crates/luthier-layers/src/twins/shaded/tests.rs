@@ -1,5 +1,6 @@
 //! Twins at places against stacks that are written otherwise.
 
+use luthier_optics::schlick::DIELECTRIC_INDEX;
 use luthier_optics::stack::{Diffuse, FilmThickness, Layer, Slab};
 
 use super::*;
@@ -102,7 +103,7 @@ fn lobes_at(stack: &Stack, place: &Place) -> Rgb {
 #[test]
 fn a_coat_over_a_side_is_the_mean_of_two_stacks() {
     let plastic = |f0: f64| Base::Dielectric {
-        ior: Ior::engine(&Ior::constant(1.5, 0.0).unwrap()).with_f0([f0; 3]),
+        ior: Ior::engine(&Ior::constant(1.5, 0.0).unwrap(), DIELECTRIC_INDEX).with_f0([f0; 3]),
         slab: Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] },
     };
     let mut engine = copper();

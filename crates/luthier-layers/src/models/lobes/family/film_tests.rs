@@ -4,6 +4,7 @@ use glam::DVec3;
 use luthier_optics::color::Color;
 use luthier_optics::interface::Interface;
 use luthier_optics::ior::Ior;
+use luthier_optics::schlick::DIELECTRIC_INDEX;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Film, FilmThickness, Layer, Slab, Stack, Surface};
 
 use super::tests::traced;
@@ -17,7 +18,7 @@ fn filmed(ior: f64, nm: f64) -> Stack {
     let film = Film { ior: Ior::constant(ior, 0.0).unwrap(), thickness: FilmThickness { min_nm: nm, max_nm: nm } };
     let surface = Surface::isotropic(Distribution::Ggx, 0.5);
     let slab = Slab { thickness_um: 0.0, absorption_per_um: [0.0; 3] };
-    let interface = Base::Dielectric { ior: Ior::engine(&Ior::vacuum()).with_f0([0.04; 3]), slab };
+    let interface = Base::Dielectric { ior: Ior::engine(&Ior::vacuum(), DIELECTRIC_INDEX).with_f0([0.04; 3]), slab };
     let diffuse = Base::Diffuse(Diffuse { albedo: [0.5; 3], sigma: 0.0 });
     let layers = vec![
         Layer { films: vec![film], surface, base: interface },
@@ -75,7 +76,7 @@ fn coated(alpha: f64, below: Stack) -> Stack {
         if let Base::Dielectric { ior, .. } = &mut layer.base
             && let Some(f0) = ior.f0()
         {
-            *ior = Ior::engine(&clear).with_f0(f0);
+            *ior = Ior::engine(&clear, DIELECTRIC_INDEX).with_f0(f0);
         }
         layer
     });

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use luthier_optics::color::Color;
 use luthier_optics::ior::{Ior, IorSample};
+use luthier_optics::schlick::DIELECTRIC_INDEX;
 use luthier_optics::stack::{Base, Diffuse, Distribution, Layer, Slab, Stack, Surface};
 
 use super::{Family, Mix, Paint, SlopeAxis};
@@ -19,7 +20,7 @@ fn plastic(is_coated: bool, tint: [f64; 3]) -> Stack {
     let slab = |absorption_per_um| Slab { thickness_um: 1.0, absorption_per_um };
     let layer = |base| Layer { films: vec![], surface: Surface::isotropic(Distribution::Ggx, 0.5), base };
     let above = Ior::constant(if is_coated { 1.5 } else { 1.0 }, 0.0).unwrap();
-    let index = Ior::engine(&above);
+    let index = Ior::engine(&above, DIELECTRIC_INDEX);
     let coat = layer(Base::Dielectric { ior: above, slab: slab(tint) });
     let interface = layer(Base::Dielectric { ior: index.with_f0([0.04; 3]), slab: slab([0.0; 3]) });
     let diffuse = layer(Base::Diffuse(Diffuse { albedo: [0.5; 3], sigma: 0.0 }));
