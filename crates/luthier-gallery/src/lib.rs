@@ -52,6 +52,7 @@ pub use error::GalleryError;
 pub use exhibit::{Exhibit, Look, Simulated};
 pub use luthier_environment::Scenery;
 pub use maps::hidden_maps;
+pub use markup::escape;
 
 use luthier_export::Package;
 

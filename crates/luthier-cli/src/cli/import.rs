@@ -34,6 +34,9 @@ pub(crate) struct ImportOptions {
     /// Replace files that are there already
     #[arg(long)]
     pub(crate) force: bool,
+    /// Write what became of each property as a page for browsers
+    #[arg(long, value_name = "FILE")]
+    pub(crate) html: Option<PathBuf>,
     /// Print what became of each property as JSON
     #[arg(long)]
     pub(crate) json: bool,

@@ -33,6 +33,18 @@ fn what_is_imported_bakes() {
     assert_eq!(found.collect::<Vec<_>>(), [("exhaust", "lobes", 0), ("paint", "lobes", 2)]);
 }
 
+/// The page has what the text has, and is none of the files of the import.
+#[test]
+fn what_became_of_each_property_is_a_page() {
+    let workshop = Workshop::with(&[("car.gltf", &car())]);
+    workshop.run(&["import", "car.gltf", "-o", "m", "--html", "car.html"]).exits(0);
+    let page = workshop.text("car.html");
+    assert!(page.starts_with("<!doctype html>") && page.contains("KHR_materials_sheen"), "{page}");
+    assert!(page.contains("paint.toml") && page.contains("class=\"dropped\">dropped"), "{page}");
+    workshop.run(&["import", "car.gltf", "-o", "n", "--html", "n/paint.toml"]).fails(2, &["n/paint.toml", "page"]);
+    assert!(!workshop.path("n").exists());
+}
+
 /// Nothing is replaced without a word, and a broken file leaves the folder as it was.
 #[test]
 fn files_are_replaced_by_force_alone() {

@@ -1,12 +1,14 @@
 //! `import`: material files from other formats.
 
+mod page;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use luthier_export::{input, label};
 use luthier_import::{Fate, Import, ImportError, Imported, Line, import};
-use luthier_terminal::{Failure, Outcome, files, print};
+use luthier_terminal::{Failure, Outcome, deliver, files, print};
 use serde_json::{Value, json};
 
 use crate::cli::ImportOptions;
@@ -37,7 +39,13 @@ pub(crate) fn run(options: &ImportOptions) -> Outcome {
     }
     let written = together(&mut read);
     let report = report(&read);
+    if let Some(html) = &options.html {
+        refuse_among(html, options, &written)?;
+    }
     write(options, written, &report)?;
+    if let Some(html) = &options.html {
+        deliver(&page::page(&read), Some(html))?;
+    }
     print(&if options.json { format!("{report:#}") } else { text(options, &read) })
 }
 
@@ -102,6 +110,18 @@ fn write(options: &ImportOptions, written: BTreeMap<String, Vec<u8>>, report: &V
     Ok(())
 }
 
+/// Refuses a page in place of a file of the import.
+fn refuse_among(html: &Path, options: &ImportOptions, written: &BTreeMap<String, Vec<u8>>) -> Outcome {
+    let mut own = written.keys().map(String::as_str).chain([REPORT]);
+    match own.find(|path| options.output.join(path) == html) {
+        Some(path) => Err(Failure::Usage(anyhow::anyhow!(
+            "{} is `{path}` of the import: give the page another name; nothing was written",
+            html.display()
+        ))),
+        None => Ok(()),
+    }
+}
+
 fn report(read: &[Read]) -> Value {
     let line =
         |Line { property, fate, note }: &Line| json!({ "property": property, "fate": fate.name(), "note": note });
@@ -131,19 +151,19 @@ fn text(options: &ImportOptions, read: &[Read]) -> String {
         let _ = writeln!(out, "{label}: {} materials", import.materials.len());
         out.push_str(&say(&import.lines));
         for Imported { name, source_name, lines, .. } in &import.materials {
-            let of = |fate: Fate| lines.iter().filter(|line| line.fate == fate).count();
-            let counts = Fate::ALL.map(|fate| (of(fate), fate));
-            let counts: Vec<String> =
-                counts.iter().filter(|(count, _)| *count > 0).map(|(count, fate)| format!("{count} {fate}")).collect();
             let source = if source_name.is_empty() { String::new() } else { format!(" (`{source_name}`)") };
-            let _ = writeln!(
-                out,
-                "{}{source}: {}",
-                options.output.join(format!("{name}.toml")).display(),
-                counts.join(", ")
-            );
+            let _ =
+                writeln!(out, "{}{source}: {}", options.output.join(format!("{name}.toml")).display(), counts(lines));
             out.push_str(&say(lines));
         }
     }
     out
+}
+
+/// How many properties have each fate.
+fn counts<'a>(lines: impl IntoIterator<Item = &'a Line>) -> String {
+    let mut counts = [0; Fate::ALL.len()];
+    lines.into_iter().for_each(|line| counts[line.fate as usize] += 1);
+    let counts = Fate::ALL.iter().zip(counts).filter(|(_, count)| *count > 0);
+    counts.map(|(fate, count)| format!("{count} {fate}")).collect::<Vec<_>>().join(", ")
 }
