@@ -57,6 +57,8 @@ models() { luthier-lab judge "${stacks[@]}" >docs/pages/models.md; }
 lobes() { luthier-lab lobes "${stacks[@]}" --random 200 -o docs/pages/lobes.md; }
 # An hour of two cores; with the noise of other pages (.005) six.
 families() { luthier-lab families --noise 0.012 -o docs/pages/families.md; }
+# By its name only: groups with plastics, at fewer places.
+families-plastic() { luthier-lab families --group plastic --group tinted --group bare --places 60 --noise 0.012 -o docs/pages/families-plastic.md; }
 # By its name only: the first group with the noise of other pages.
 families-metal() { luthier-lab families --group metal --noise 0.005 -o docs/pages/families-metal.md; }
 coats() { luthier-lab coats --noise 0.005 -o docs/pages/coats.md; }
