@@ -48,6 +48,8 @@ textured() { luthier-lab textured "${stacks[@]}" -o docs/pages/textured.md; }
 foreign() { luthier-lab foreign --data docs/measurements/foreign.json --page docs/pages/foreign.md; }
 # By its name only: wants Blender as a module (`pip install bpy==5.0.1`) in the Python that BPY_PYTHON names, and the program by LUTHIER.
 furnaces() { "${BPY_PYTHON:-python3}" scripts/furnaces.py "${LUTHIER:?names the program}" docs/pages/cycles.md; }
+# By its name only: wants Chromium, MaterialX (`pip install materialx==1.39.5`) in the Python that MATERIALX_PYTHON names, and the program by LUTHIER.
+furnaces-mtlx() { "${MATERIALX_PYTHON:-python3}" scripts/furnaces-mtlx.py "${LUTHIER:?names the program}" docs/pages/materialx.md; }
 stability() {
   luthier-lab stability --json -o docs/measurements/stability.json
   luthier-lab stability -o docs/pages/stability.md
