@@ -1,4 +1,4 @@
-//! What became of each property, as a page for browsers.
+//! Page for browsers on what became of each property.
 
 use std::fmt::{self, Write as _};
 
