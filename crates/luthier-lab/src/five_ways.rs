@@ -176,7 +176,8 @@ impl Subject {
         }
         let stacks: Vec<(f64, [Monochrome; 3])> = stacks
             .iter()
-            .map(|(share, stack)| (*share, [0, 1, 2].map(|c: usize| Monochrome::new(stack, WAVELENGTHS_NM[c], c))))
+            .map(|(share, stack)| (*share, stack.crossed_once()))
+            .map(|(share, stack)| (share, [0, 1, 2].map(|c: usize| Monochrome::new(&stack, WAVELENGTHS_NM[c], c))))
             .collect();
         let lobes = self.lobes(&here)?;
         let lobes: Vec<_> = lobes.iter().filter_map(|(share, lobes)| Some((*share, lobes.prepare(wo)?))).collect();

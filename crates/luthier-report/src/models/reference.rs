@@ -37,6 +37,8 @@ pub struct ReferenceSettings {
 pub struct Reference {
     wavelengths_nm: [f64; 3],
     stacks: [Monochrome; 3],
+    /// The stack as models with a shader see it, but for lobes.
+    crossed: [Monochrome; 3],
     /// Whether the light is its own mirror image in the plane of the eye.
     is_symmetric: bool,
     views: Vec<TracedView>,
@@ -74,7 +76,8 @@ const GROWTH: [f64; 2] = [1.2, 4.0];
 impl Reference {
     /// Traces a material from angles against the normal. The result does not depend on the number of threads.
     pub fn new(subject: &ModelSubject, thetas_deg: &[f64], settings: ReferenceSettings) -> Self {
-        let stacks = [0, 1, 2].map(|c: usize| Monochrome::new(&subject.stack, subject.wavelengths_nm[c], c));
+        let of = |stack: &Stack| [0, 1, 2].map(|c: usize| Monochrome::new(stack, subject.wavelengths_nm[c], c));
+        let (stacks, crossed) = (of(&subject.stack), of(&subject.stack.crossed_once()));
         let is_symmetric = is_isotropic(&subject.stack);
         let sets = JointPaths::new(&stacks);
         let views = thetas_deg.par_iter().map(|&theta_deg| {
@@ -83,7 +86,7 @@ impl Reference {
             TracedView { theta_deg, cells, histograms, paths }
         });
         let views = views.collect();
-        Self { wavelengths_nm: subject.wavelengths_nm, stacks, is_symmetric, views }
+        Self { wavelengths_nm: subject.wavelengths_nm, stacks, crossed, is_symmetric, views }
     }
 
     /// Errors at all views: angle by angle, and within an angle wavelength by wavelength.
@@ -103,7 +106,8 @@ impl Reference {
     fn energies(&self, shown: Shown<'_>, cells: &Cells) -> [Energies; 3] {
         match shown {
             Shown::Model(model) => {
-                let values = |wi| [0, 1, 2].map(|c: usize| model.eval(&self.stacks[c], wi, cells.wo));
+                let stacks = if model.info().shading().is_some() { &self.crossed } else { &self.stacks };
+                let values = |wi| [0, 1, 2].map(|c: usize| model.eval(&stacks[c], wi, cells.wo));
                 Energies::of_values(values, cells, self.is_symmetric)
             }
             Shown::Values(values) => Energies::of_values(|wi| values(wi, cells.wo), cells, self.is_symmetric),
