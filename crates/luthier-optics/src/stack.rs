@@ -9,6 +9,7 @@ use crate::Rgb;
 use crate::fresnel::FilmLayer;
 use crate::ior::Ior;
 use crate::ndf::Shape;
+use crate::schlick::DIELECTRIC_INDEX;
 
 /// A layered surface, from the exterior down.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,7 +49,7 @@ impl Stack {
 
     /// Whether it has a `metallic-roughness` surface that bends light.
     pub fn bends_in_engine(&self) -> bool {
-        self.layers.iter().any(|layer| matches!(&layer.base, Base::Dielectric { ior, .. } if bent(ior).is_some()))
+        self.layers.iter().any(|layer| matches!(&layer.base, Base::Dielectric { ior, .. } if ior.of_engine().is_some_and(|index| index != 1.0)))
     }
 
     /// The stack as models see it that follow light down and up once: a `metallic-roughness` surface shows its colour by that light alone. Its interface bends
@@ -56,32 +57,36 @@ impl Stack {
     /// has the colour of the base r.
     #[must_use]
     pub fn crossed_once(&self) -> Self {
+        self.by_index(1.0)
+    }
+
+    /// The inverse of [`Self::crossed_once`]: the stack as simulations have it, where a `metallic-roughness` surface bends light by [`DIELECTRIC_INDEX`].
+    #[must_use]
+    pub fn bent(&self) -> Self {
+        self.by_index(DIELECTRIC_INDEX)
+    }
+
+    /// The stack with another index of `metallic-roughness` surfaces, and the same colour of them.
+    fn by_index(&self, to: f64) -> Self {
         let mut here = self.clone();
         let mut above = self.exterior.clone();
-        let mut index = None;
+        let mut square = 1.0;
         for layer in &mut here.layers {
             match &mut layer.base {
                 Base::Dielectric { ior, .. } => {
-                    index = bent(ior);
-                    if let Some((_, curves)) = index.zip(ior.f82_rgb()) {
-                        *ior = Ior::engine(&above, 1.0).with_f82(curves);
+                    let engine = ior.of_engine().filter(|index| *index != to).zip(ior.f82_rgb());
+                    square = engine.map_or(1.0, |(index, _)| (index / to) * (index / to));
+                    if let Some((_, curves)) = engine {
+                        *ior = Ior::engine(&above, to).with_f82(curves);
                     }
                     above = ior.clone();
                 }
-                Base::Diffuse(base) => {
-                    let square = index.map_or(1.0, |n| n * n);
-                    base.albedo = base.albedo.map(|r| r / (square - r * (square - 1.0)));
-                }
+                Base::Diffuse(base) => base.albedo = base.albedo.map(|r| r / (square - r * (square - 1.0))),
                 Base::Conductor { .. } => {}
             }
         }
         here
     }
-}
-
-/// The index by which a `metallic-roughness` surface bends light, if it does.
-fn bent(ior: &Ior) -> Option<f64> {
-    ior.of_engine().filter(|index| *index != 1.0)
 }
 
 impl Stack {

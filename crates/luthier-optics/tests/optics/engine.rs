@@ -52,6 +52,10 @@ fn light_that_crosses_once_shows_the_same_colour() {
         let above = if is_coated { 1.6 } else { 1.0 };
         assert_eq!([&bent, &crossed].map(|stack| index(stack, interface)), [1.5 * above, above]);
         assert_eq!(crossed.crossed_once(), crossed);
+        assert_eq!([&crossed, &unbent].map(|stack| index(&stack.bent(), interface)), [1.5 * above; 2]);
+        for back in [crossed.bent(), unbent.bent(), bent.bent()] {
+            assert!(albedo(&back).into_iter().zip(albedo(&bent)).all(|(a, b)| (a - b).abs() < 1e-12));
+        }
     }
 }
 

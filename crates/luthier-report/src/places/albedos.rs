@@ -36,13 +36,13 @@ impl Default for AlbedoSettings {
 pub struct AlbedosAt {
     /// Angle of the eye against the normal, degrees.
     pub theta_deg: f64,
-    /// Of the formula.
+    /// Albedo by the formula of the surface.
     pub formula: Rgb,
-    /// Of the simulated layers.
+    /// Albedo of the simulated layers.
     pub simulated: Rgb,
-    /// Standard error of that; it is an upper bound, because the paths fill their cube evenly.
+    /// Standard error of the simulated albedo; it is an upper bound, because the paths fill their cube evenly.
     pub std_err: Rgb,
-    /// Of the model of the material, with the rows that ship.
+    /// Albedo by the model of the material, with the rows that ship.
     pub model: Rgb,
 }
 

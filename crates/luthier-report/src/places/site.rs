@@ -41,7 +41,7 @@ impl<'a> Site<'a> {
         let rows = Rows::at(subject, material, &place, Weights::Exact)?;
         let color = color(entry);
         let mixed = mixed(&subject.stacks[material], &place, entry).into_iter();
-        Ok(Self { rows, mixed: mixed.map(|(share, stack)| (share, ColorPaths::new(&stack, &color))).collect() })
+        Ok(Self { rows, mixed: mixed.map(|(share, stack)| (share, ColorPaths::new(&stack.bent(), &color))).collect() })
     }
 
     /// `f cos_theta_i` of the model, RGB, of unit directions to the light and to the eye.
