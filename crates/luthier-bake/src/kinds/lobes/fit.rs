@@ -137,7 +137,7 @@ impl Job for FitJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 14 } else { 9 }
+        if is_family(self.varying) { 15 } else { 10 }
     }
 
     fn inputs(&self) -> Value {

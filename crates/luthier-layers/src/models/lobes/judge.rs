@@ -7,11 +7,10 @@ use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{FilmThickness, Stack};
 
-use super::fit::{cells, covariances, indices};
-use super::half_vector::{outside, refracted};
+use super::fit::{Covariance, cells, covariances, indices};
 use super::tally::Cells;
 use super::{
-    Axes, Family, FirstInterface, FitSettings, Lobes, Mix, Paint, Slopes, Varied, Varying, ViewAxis, base_below,
+    Axes, Below, Family, FirstInterface, FitSettings, Lobes, Mix, Paint, Slopes, Varied, Varying, ViewAxis, base_below,
     patina, shown,
 };
 use crate::references::layered_mc::ColorPaths;
@@ -69,13 +68,20 @@ struct View {
     factor: f64,
     /// Slope parameters and colours in place of a factor.
     place: Option<([Slopes; 2], Paint)>,
-    cells: Cells,
     wo: DVec3,
-    /// Energy by cell and channel, without the light of one facet of the first interface.
-    energies: Vec<Rgb>,
-    /// Sum of the squared energies of the paths by cell, means of the channels.
-    squares: Vec<f64>,
+    /// The light in the cells of each medium: those of one are blind at some views, see [`super::Simulation`].
+    counted: Vec<Counted>,
     first_facet: Rgb,
+}
+
+/// Light of a view in the cells of a medium, without that of one facet of the first interface.
+#[derive(Debug)]
+struct Counted {
+    cells: Cells,
+    /// Energy by wider cell and channel.
+    energies: Vec<Rgb>,
+    /// Sum of the squared energies of the paths by wider cell, means of the channels.
+    squares: Vec<f64>,
 }
 
 impl Judge {
@@ -83,7 +89,9 @@ impl Judge {
     pub fn new(stack: &Stack, color: &Color, varying: Option<Varying>) -> Self {
         let (stack, axes) = (shown(stack), Varying::axes(varying, stack));
         let varying = varying.filter(|_| axes.is_none());
-        let index = indices(&stack).last().copied().unwrap_or(1.0);
+        let cells_of = |rough: &[Covariance], axes| -> Vec<Cells> {
+            indices(&stack).into_iter().map(|index| cells(index, rough, axes)).collect()
+        };
         let axis = ViewAxis::of(&stack, FitSettings::default().rows);
         let views = (0..VIEWS).map(|number| {
             let share = number as f64 / (VIEWS - 1) as f64;
@@ -98,7 +106,7 @@ impl Judge {
             let seed = SEEDS + number as u64;
             if let Some(Varying::Family(family)) = varying {
                 let (slopes, paint, here) = in_colors(family, &stack, number);
-                let cells = cells(index, &covariances(&here, None), None);
+                let cells = cells_of(&covariances(&here, None), None);
                 return View { place: Some((slopes, paint)), ..View::new(&here, color, seed, (1.0, wo), cells, None) };
             }
             let factor = varying.map_or(1.0, |varying| {
@@ -113,7 +121,7 @@ impl Judge {
                 varying.factor(((2 * number) % VIEWS * (steps - 1) / (VIEWS - 1)) as f64 + 0.5)
             });
             let here = varying.map_or_else(|| stack.clone(), |varying| varying.apply(&stack, factor));
-            View::new(&here, color, seed, (factor, wo), cells(index, &covariances(&stack, axes), axes), axes)
+            View::new(&here, color, seed, (factor, wo), cells_of(&covariances(&stack, axes), axes), axes)
         });
         Self { axes, views: views.collect() }
     }
@@ -133,28 +141,32 @@ impl Judge {
         self.views.iter().map(|view| self.error_at(view, &at(view.factor))).fold(FitError::default(), FitError::max)
     }
 
+    /// The largest errors that the cells of any medium show.
     fn error_at(&self, view: &View, lobes: &Lobes) -> FitError {
         let Some(below) = lobes.below(view.wo) else { return FitError::default() };
+        let errors = view.counted.iter().map(|counted| self.error_in(counted, view, &below));
+        errors.fold(FitError::default(), FitError::max)
+    }
+
+    fn error_in(&self, Counted { cells, energies, squares }: &Counted, view: &View, below: &Below) -> FitError {
         let at = self.axes.map_or(view.wo, |axes| axes.inside(view.wo));
-        let eye = refracted(at, view.cells.index);
-        let mut found = vec![[0.0; 3]; view.energies.len()];
-        for point in view.cells.points(at) {
-            let Some(wi) = outside(point.slope, eye, view.cells.index) else { continue };
-            let value = below.eval(self.axes.map_or(wi, |axes| axes.outside(wi)));
-            let cell = &mut found[view.cells.wider(point.cell)];
-            (0..3).for_each(|c| cell[c] += value[c] * point.solid_angle);
+        let mut found = vec![[0.0; 3]; energies.len()];
+        let by_cell = cells.light(at, |wi| below.eval(self.axes.map_or(wi, |axes| axes.outside(wi))));
+        for (cell, light) in by_cell.into_iter().enumerate() {
+            let wider = &mut found[cells.wider(cell)];
+            (0..3).for_each(|c| wider[c] += light[c]);
         }
         let stated = below.row().albedo_dir;
         let channels = [0, 1, 2].map(|c: usize| {
-            let albedo = view.first_facet[c] + view.energies.iter().map(|rgb| rgb[c]).sum::<f64>();
-            let differences = found.iter().zip(&view.energies).map(|(found, energy)| (found[c] - energy[c]).abs());
+            let albedo = view.first_facet[c] + energies.iter().map(|rgb| rgb[c]).sum::<f64>();
+            let differences = found.iter().zip(energies).map(|(found, energy)| (found[c] - energy[c]).abs());
             (0.5 * differences.sum::<f64>() / albedo.max(f64::MIN_POSITIVE), (stated[c] - albedo).abs(), albedo)
         });
         let mean = channels.iter().map(|(_, _, albedo)| albedo).sum::<f64>() / 3.0;
         // A normal number of deviation d has a mean absolute value of sqrt(2 / pi) d.
-        let deviations: f64 = view.squares.iter().map(|squares| (FRAC_2_PI * squares).sqrt()).sum();
+        let deviations: f64 = squares.iter().map(|squares| (FRAC_2_PI * squares).sqrt()).sum();
         let rest = mean - view.first_facet.iter().sum::<f64>() / 3.0;
-        let variance = view.squares.iter().sum::<f64>() - rest * rest / PATHS as f64;
+        let variance = squares.iter().sum::<f64>() - rest * rest / PATHS as f64;
         FitError {
             lobe: channels.iter().map(|(lobe, ..)| *lobe).fold(0.0, f64::max),
             lobe_noise: 0.5 * deviations / mean.max(f64::MIN_POSITIVE),
@@ -226,24 +238,30 @@ impl View {
         color: &Color,
         seed: u64,
         (factor, wo): (f64, DVec3),
-        cells: Cells,
+        cells: Vec<Cells>,
         axes: Option<Axes>,
     ) -> Self {
-        let count = cells.wider(cells.count() - 1) + 1;
-        let (mut energies, mut squares) = (vec![[0.0; 3]; count], vec![0.0; count]);
+        let empty = cells.into_iter().map(|cells| {
+            let count = cells.wider(cells.count() - 1) + 1;
+            Counted { cells, energies: vec![[0.0; 3]; count], squares: vec![0.0; count] }
+        });
+        let mut counted: Vec<Counted> = empty.collect();
         let at = axes.map_or(wo, |axes| axes.inside(wo));
         ColorPaths::new(stack, color).trace(seed, PATHS, wo, |path| {
-            if !path.is_first_facet {
-                let wi = axes.map_or(path.wi, |axes| axes.inside(path.wi));
+            if path.is_first_facet {
+                return;
+            }
+            let wi = axes.map_or(path.wi, |axes| axes.inside(path.wi));
+            let weight = path.weight.map(|weight| weight / PATHS as f64);
+            let mean = weight.iter().sum::<f64>() / 3.0;
+            for Counted { cells, energies, squares } in &mut counted {
                 let cell = cells.wider(cells.cell(wi, at));
-                let weight = path.weight.map(|weight| weight / PATHS as f64);
                 (0..3).for_each(|c| energies[cell][c] += weight[c]);
-                let mean = weight.iter().sum::<f64>() / 3.0;
                 squares[cell] += mean * mean;
             }
         });
         let first_facet = FirstInterface::of(stack, color).map_or([0.0; 3], |first| first.energy(wo));
-        Self { factor, place: None, cells, wo, energies, squares, first_facet }
+        Self { factor, place: None, wo, counted, first_facet }
     }
 }
 
@@ -252,7 +270,7 @@ mod tests {
     use luthier_optics::ior::Ior;
     use luthier_optics::stack::{Base, Distribution, Layer, Slab, Surface};
 
-    use super::super::{LOBES, Traced};
+    use super::super::{LOBES, Simulation, Traced};
     use super::*;
 
     const COLOR: Color = Color::ThreeWavelengths([650.0, 550.0, 450.0]);
@@ -293,5 +311,25 @@ mod tests {
             // Three rows: energies between them are off.
             assert!(judge.error(&good.thinned(9)).albedo > error.albedo);
         }
+    }
+
+    /// In the half vectors of a steep medium all light of a flat view is in a few cells, so that lobes may be off by much and seem near.
+    #[test]
+    fn flat_views_of_steep_media_are_seen() {
+        let slab = Slab { thickness_um: 1.0, absorption_per_um: [0.3; 3] };
+        let coat = Base::Dielectric { ior: Ior::constant(2.22, 0.0).unwrap(), slab };
+        let metal = Base::Conductor { ior: Ior::constant(2.0, 2.9).unwrap() };
+        let layer =
+            |alpha, base| Layer { films: vec![], surface: Surface::isotropic(Distribution::Beckmann, alpha), base };
+        let stack = Stack { exterior: Ior::vacuum(), layers: vec![layer(0.115, coat), layer(0.157, metal)] };
+        let simulation = Simulation::new(&stack, &COLOR, FitSettings::default());
+        let judge = Judge::new(&stack, &COLOR, None);
+        let [inside, nearest] = [simulation.in_cells(1), simulation].map(|light| light.fit(LOBES));
+        let view = &judge.views[0];
+        let [outside, own] = [0, 1]
+            .map(|medium: usize| judge.error_in(&view.counted[medium], view, &inside.below(view.wo).unwrap()).lobe);
+        assert!(own < 0.02 && outside > 0.04, "{own} {outside}");
+        let error = judge.error_of(|_| nearest.clone()).lobe;
+        assert!(nearest.frame.index < 1.1 && error < 0.02, "{error}");
     }
 }

@@ -170,7 +170,7 @@ impl ViewAxis {
             }
             parts.iter_mut().zip(solve(matrix.clone(), right)).for_each(|(parts, x)| parts[part][c] = x);
         }
-        parts.iter().map(|parts| Row::of_parts(parts, has_base)).collect()
+        parts.iter().map(|parts| Row::within(rows[0].lobes.len(), parts, has_base)).collect()
     }
 
     /// The nodes on both sides of a view, each with its weight in the line between them.
@@ -341,6 +341,8 @@ impl Row {
     /// | 4, with two lobes | 1 over the tail and share of the first lobe, then of the second |
     /// | last | directional albedo RGB, shear of the second lobe |
     ///
+    /// Rows with more lobes, which no bake has, have further shapes after part 4 in the same way.
+    ///
     /// Tails hold at all views of a tile. A shader that has those of the material as numbers ([`Self::inverse_tails`]) does not read part 4.
     ///
     /// Sharpness x and y and shear k are multiplied by the root of the tail. With z, 1 over the tail, the shape is then
@@ -359,12 +361,13 @@ impl Row {
             let [x, y] = lobe.sharpness.map(|sharpness| sharpness * tail.sqrt());
             [x, y, 1.0 / tail, lobe.share]
         });
-        match shapes.collect::<Vec<_>>()[..] {
-            [[a, b, first_tail, first_share], [c, d, second_tail, second_share], ..] => {
-                parts.extend([[a, b, c, d], [first_tail, first_share, second_tail, second_share]]);
+        for pair in shapes.collect::<Vec<_>>().chunks(2) {
+            match *pair {
+                [[a, b, first_tail, first_share], [c, d, second_tail, second_share]] => {
+                    parts.extend([[a, b, c, d], [first_tail, first_share, second_tail, second_share]]);
+                }
+                _ => parts.extend(pair),
             }
-            [shape] => parts.push(shape),
-            [] => {}
         }
         parts.push(part(self.albedo_dir, shear_second));
         parts
@@ -386,8 +389,13 @@ impl Row {
 
     /// The row of parts. With `has_base`, the first two belong to a diffuse base. Three parts are those of [`OneWidth`]. Parts beyond those of [`LOBES`] lobes are of families beside it.
     pub fn of_parts(parts: &[[f64; 4]], has_base: bool) -> Self {
+        Self::within(LOBES, parts, has_base)
+    }
+
+    /// [`Self::of_parts`] with at most so many lobes.
+    fn within(most: usize, parts: &[[f64; 4]], has_base: bool) -> Self {
         let (of_base, parts) = parts.split_at(if has_base { Self::BASE_PARTS.min(parts.len()) } else { 0 });
-        let parts = &parts[..parts.len().min(Self::parts(LOBES))];
+        let parts = &parts[..parts.len().min(Self::parts(most))];
         let falloff = [1, 0].map(|part: usize| of_base.get(part).map_or(0.0, |part| part[3]));
         let base = BaseLight {
             energy: rgb(of_base.get(1)),
@@ -398,26 +406,31 @@ impl Row {
         };
         let inner = parts.get(1..parts.len().saturating_sub(1)).unwrap_or_default();
         let shears = [parts.first(), parts.last()].map(|part| part.map_or(0.0, |part| part[3]));
-        let shaped = match *inner {
-            [strength] => vec![(strength, [shears[0], shears[0], 1.0, shears[1]])],
-            [strength, shape] => vec![(strength, shape)],
-            [first, second, [a, b, c, d], [first_tail, first_share, second_tail, second_share]] => {
-                vec![(first, [a, b, first_tail, first_share]), (second, [c, d, second_tail, second_share])]
+        let (strengths, shapes) = inner.split_at(inner.len().div_ceil(2));
+        let pairs = shapes.chunks(2).flat_map(|pair| match *pair {
+            [[a, b, c, d], [first_tail, first_share, second_tail, second_share]] => {
+                vec![[a, b, first_tail, first_share], [c, d, second_tail, second_share]]
             }
-            _ => Vec::new(),
+            _ => pair.to_vec(),
+        });
+        let shaped: Vec<([f64; 4], [f64; 4])> = match *inner {
+            [strength] => vec![(strength, [shears[0], shears[0], 1.0, shears[1]])],
+            _ => strengths.iter().copied().zip(pairs).collect(),
         };
         let shears = if inner.len() == 1 { [0.0; 2] } else { shears };
-        let lobes = shaped.into_iter().zip(shears).map(|((strength, [x, y, inverse_tail, share]), shear)| {
-            let inverse_tail = inverse_tail.max(1.0);
-            Lobe {
-                strength: rgb(Some(&strength)),
-                share,
-                shift: strength[3],
-                sharpness: [x, y].map(|x| x * inverse_tail.sqrt()),
-                shear: shear * inverse_tail.sqrt(),
-                tail: 1.0 / inverse_tail,
-            }
-        });
+        let lobes = shaped.into_iter().zip(shears.into_iter().chain(std::iter::repeat(0.0))).map(
+            |((strength, [x, y, inverse_tail, share]), shear)| {
+                let inverse_tail = inverse_tail.max(1.0);
+                Lobe {
+                    strength: rgb(Some(&strength)),
+                    share,
+                    shift: strength[3],
+                    sharpness: [x, y].map(|x| x * inverse_tail.sqrt()),
+                    shear: shear * inverse_tail.sqrt(),
+                    tail: 1.0 / inverse_tail,
+                }
+            },
+        );
         Self {
             albedo_dir: rgb(parts.last()),
             lobes: lobes.collect(),
@@ -490,7 +503,7 @@ impl Row {
         let lengths = self.base.zip(other.base).map(|(own, other)| [own.lengths, other.lengths]);
         let (own, other) = (self.to_parts(), other.to_parts());
         let parts = own.iter().zip(&other).map(|(a, b)| [0, 1, 2, 3].map(|i: usize| a[i] + t * (b[i] - a[i])));
-        let mut between = Self::of_parts(&parts.collect::<Vec<_>>(), self.base.is_some());
+        let mut between = Self::within(self.lobes.len(), &parts.collect::<Vec<_>>(), self.base.is_some());
         if let (Some(base), Some([a, b])) = (&mut between.base, lengths) {
             base.lengths = [0, 1, 2].map(|i: usize| a[i] + t * (b[i] - a[i]));
         }
@@ -680,6 +693,27 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Pages try more lobes than bakes have.
+    #[test]
+    fn rows_of_three_lobes_mix() {
+        let lobe = |k: f64| Lobe {
+            strength: [k, 2.0, 3.0],
+            share: 0.5,
+            shift: 0.25 * k,
+            sharpness: [8.0, 9.0 + k],
+            shear: 0.0,
+            tail: 0.25,
+        };
+        let row = |k: f64| Row {
+            albedo_dir: [k; 3],
+            lobes: [k, k + 1.0, k + 2.0].map(lobe).to_vec(),
+            wide: [0.1; 3],
+            base: None,
+        };
+        assert_eq!(row(0.0).to_parts().len(), Row::parts(3));
+        assert_eq!(row(0.0).between(&row(4.0), 0.5), row(2.0));
     }
 
     #[test]

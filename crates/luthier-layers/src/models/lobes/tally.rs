@@ -143,6 +143,18 @@ impl Cells {
         points
     }
 
+    /// The light that a function `f cos_theta_i` of the light direction sends to `wo`, by cell.
+    pub(super) fn light(&self, wo: DVec3, of: impl Fn(DVec3) -> Rgb) -> Vec<Rgb> {
+        let eye = refracted(wo, self.index);
+        let mut light = vec![[0.0; 3]; self.count()];
+        for point in self.points(wo) {
+            let Some(wi) = outside(point.slope, eye, self.index) else { continue };
+            let value = of(wi);
+            (0..3).for_each(|c| light[point.cell][c] += value[c] * point.solid_angle);
+        }
+        light
+    }
+
     /// The middle of a part of a cell, between two radii and two angles; `None` if light from there does not leave the medium.
     fn point(&self, cell: usize, radius: [f64; 2], phi: [f64; 2], eye: DVec3) -> Option<Point> {
         let mut area = (radius[1] * radius[1] - radius[0] * radius[0]) * (phi[1] - phi[0]);
