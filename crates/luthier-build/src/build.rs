@@ -75,13 +75,13 @@ impl Build<'_> {
     ///
     /// ```
     /// let folder = tempfile::tempdir()?;
-    /// let file = folder.path().join("gold.toml");
-    /// std::fs::write(&file, "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n")?;
+    /// let file = folder.path().join("chalk.toml");
+    /// std::fs::write(&file, "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n")?;
     ///
     /// let out = folder.path().join("out");
     /// let told = luthier_build::Build::of([&file]).in_folder(&out);
     /// assert_eq!(told.lines, [format!("cargo::rerun-if-changed={}", file.display())]);
-    /// assert!(std::fs::read_to_string(out.join("materials.rs"))?.contains("pub const GOLD: u32 = 0;"));
+    /// assert!(std::fs::read_to_string(out.join("materials.rs"))?.contains("pub const CHALK: u32 = 0;"));
     /// assert!(out.join("materials/manifest.json").exists());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

@@ -10,7 +10,7 @@ use luthier_build::{Build, Told};
 const RED: &str = "schema = 1\nname = \"red\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = [0.5, 0.05, 0.05]\n";
 
 /// A name that begins with a digit in Rust, and tables.
-const GOLD: &str = "schema = 1\nname = \"24-carat\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n[bake]\nmodel = \"microfacet\"\n";
+const GOLD: &str = "schema = 1\nname = \"24-carat\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.05\n[bake]\nmodel = \"microfacet\"\n";
 
 /// A map that is not there.
 const LEATHER: &str = "schema = 1\nname = \"leather\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.2\n\

@@ -5,20 +5,23 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use luthier::{Bake, Error, Form, MemoryStore, Observer, Package, Shading, Source, refuse};
+use luthier::{Bake, Error, Form, MemoryStore, Observer, Options, Package, Shading, Source, refuse};
 use luthier_bake::{BakeError, JobKind};
 
-const ENAMEL: &str = "schema = 1
-name = \"enamel\"
+const LACQUER: &str = "schema = 1
+name = \"lacquer\"
 
 [[layer]]
 type = \"dielectric\"
 ior = 1.5
-alpha = 0.2
+alpha = 0.1
+thickness_um = 20
+absorption_per_um = [0.002, 0.03, 0.04]
 
 [[layer]]
-type = \"diffuse\"
-albedo = [0.6, 0.05, 0.08]
+type = \"conductor\"
+ior = \"ag\"
+alpha = 0.3
 
 [bake]
 model = \"elek\"
@@ -58,32 +61,34 @@ struct Editor {
 impl Editor {
     /// Bakes a text; `None` where it has mistakes, or where another came first.
     fn bake(&self, about: &str, text: &str, watch: &Watch) -> Result<Option<Package>, Error> {
-        let mut sources = [Source::of_text(Path::new("enamel.toml"), text.to_owned())];
+        let mut sources = [Source::of_text(Path::new("lacquer.toml"), text.to_owned())];
         refuse(&mut sources, |material| Shading::default().doubts(material));
         for diagnostic in sources[0].diagnostics() {
             println!("{about}: {diagnostic}");
         }
         let Some(material) = sources[0].material() else { return Ok(None) };
-        let bake = Bake { observer: watch, ..Bake::wgsl(&[Form::Baked]) };
+        // Sizes of tables are searched for when the file is done: fixed ones leave the tables of other layers as they are.
+        let options = Options { search: false, ..Options::default() };
+        let bake = Bake { observer: watch, options, ..Bake::wgsl(&[Form::Baked]) };
         let package = match bake.package(std::slice::from_ref(material), &self.store) {
             Err(Error::Bake(BakeError::Cancelled)) => {
-                println!("{about}: stopped, {} results are kept", self.store.len());
+                println!("{about}: stopped, results kept: {}", self.store.len());
                 return Ok(None);
             }
             package => package?,
         };
         let [ran, kept] = [&watch.ran, &watch.kept].map(|count| count.load(Ordering::Relaxed));
-        println!("{about}: {ran} jobs ran, {kept} were kept, {} bytes of tables", package.texel_bytes());
+        println!("{about}: jobs that ran {ran}, results kept {kept}, bytes of tables {}", package.texel_bytes());
         Ok(Some(package))
     }
 }
 
 fn main() -> Result<(), Error> {
     let editor = Editor::default();
-    editor.bake("a slip", &ENAMEL.replace("0.08", "8"), &Watch::default())?;
-    editor.bake("the first text", ENAMEL, &Watch { is_typing: true, ..Watch::default() })?;
-    editor.bake("once more", ENAMEL, &Watch::default())?;
-    editor.bake("another colour", &ENAMEL.replace("0.6", "0.3"), &Watch::default())?;
-    editor.bake("another index", &ENAMEL.replace("1.5", "1.6"), &Watch::default())?;
+    editor.bake("a slip", &LACQUER.replace("1.5", "\"1.5\""), &Watch::default())?;
+    editor.bake("the first text", LACQUER, &Watch { is_typing: true, ..Watch::default() })?;
+    editor.bake("once more", LACQUER, &Watch::default())?;
+    editor.bake("another colour", &LACQUER.replace("0.03", "0.01"), &Watch::default())?;
+    editor.bake("another metal", &LACQUER.replace("ag", "cu"), &Watch::default())?;
     Ok(())
 }

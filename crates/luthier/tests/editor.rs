@@ -12,7 +12,7 @@ fn editor() -> PathBuf {
 /// Jobs that ran and jobs that were kept, in the line about an edit.
 fn jobs(told: &str, about: &str) -> [usize; 2] {
     let line = told.lines().find_map(|line| line.strip_prefix(&format!("{about}: "))).unwrap();
-    let numbers: Vec<usize> = line.split(' ').filter_map(|word| word.parse().ok()).collect();
+    let numbers: Vec<usize> = line.split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
     [numbers[0], numbers[1]]
 }
 
@@ -21,12 +21,12 @@ fn an_edit_computes_what_it_changes() {
     let output = Command::new(editor()).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let told = String::from_utf8(output.stdout).unwrap();
-    assert!(told.starts_with("a slip: enamel.toml:11:22: error: "), "{told}");
+    assert!(told.starts_with("a slip: lacquer.toml:6:7: error: "), "{told}");
     assert!(told.contains("\nthe first text: stopped, "), "{told}");
 
     let [ran, kept] = jobs(&told, "once more");
     assert!(kept > 0 && ran > 0, "what was done before the key is kept: {told}");
-    assert_eq!(jobs(&told, "another colour"), [0, ran + kept], "a colour of a base is in no table: {told}");
-    let [ran, kept] = jobs(&told, "another index");
-    assert!(ran > 0 && kept > 0, "the index is not in every table: {told}");
+    let all = ran + kept;
+    assert_eq!(jobs(&told, "another colour"), [0, all], "the colour of a varnish is in no table: {told}");
+    assert_eq!(jobs(&told, "another metal"), [1, all - 1], "its row alone is new: {told}");
 }
