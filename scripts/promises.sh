@@ -10,7 +10,8 @@ echo "== every crate with Rust $oldest"
 # The window, too. Tests may need a later Rust.
 cargo "+$oldest.0" check --locked --workspace --features luthier-cli/view
 
-# Programs in Rust use these; the others are parts of the command, whose interface is its options and the manifest.
+# Programs in Rust use these; the others are parts of the command, whose interface is its options and the manifest. The tool sees that an item of another
+# crate is given on, and not how that item changes: the examples of the library, which are tests, use those.
 crates=(luthier luthier-build)
 tag=$(git tag --list 'v[0-9]*' '[0-9]*' --sort=-version:refname | head -n 1)
 echo "== the interface of ${crates[*]} since ${tag:-the last release}"
