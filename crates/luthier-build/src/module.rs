@@ -76,7 +76,8 @@ fn constants(prefix: &str, numbers: &[(String, usize, &String, &String)]) -> Str
 }
 
 fn module(text: &mut String, about: &str, name: &str, inside: &str) {
-    let inside: String = inside.lines().map(|line| format!("    {line}\n")).collect();
+    let indented = |line: &str| if line.is_empty() { "\n".to_owned() } else { format!("    {line}\n") };
+    let inside: String = inside.trim_start().lines().map(indented).collect();
     let _ = write!(text, "\n/// {about}\n#[allow(dead_code)]\npub mod {name} {{\n{inside}}}\n");
 }
 
