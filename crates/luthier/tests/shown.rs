@@ -113,9 +113,8 @@ fn read(text: &str, all: &mut Docs) {
             all.insert(name.to_owned(), docs.clone());
             is_trait = bare.starts_with("pub trait ");
             owner = is_trait.then(|| name.to_owned());
-        } else if line.starts_with("impl") {
-            let of =
-                line.strip_prefix("impl<").map_or(&line[4..], |rest| rest.split_once('>').map_or("", |(_, of)| of));
+        } else if let Some(rest) = line.strip_prefix("impl") {
+            let of = rest.strip_prefix('<').map_or(rest, |rest| rest.split_once('>').map_or("", |(_, of)| of));
             owner = named(of, &[" "]).filter(|_| !line.contains(" for ")).map(str::to_owned);
         } else if let Some(name) = function {
             match &owner {
