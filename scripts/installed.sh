@@ -22,6 +22,7 @@ works() {
 }
 
 step "packed crates"
+rm -f target/package/*.crate
 ./scripts/package.sh >"$work/log" 2>&1 || { cat "$work/log" && exit 1; }
 crates=$work/crates
 mkdir "$crates"
