@@ -35,6 +35,10 @@ step "wgpu"
 materials=(car-paint soap-film granier-film yamaguchi-brushed copper-patina)
 for name in "${materials[@]}"; do example luthier-example-wgpu "$bake" "$(scene "$name")" "$out/wgpu-$name.png"; done
 
+step "wgpu, a bake of the build script"
+example luthier-example-wgpu - "$(scene car-paint)" "$out/wgpu-built-in.png"
+example difference "$out/wgpu-car-paint.png" "$out/wgpu-built-in.png" "$limit"
+
 step "wgpu, with surroundings"
 luthier environment --sky strip-studio --size 128 --layout cube --out "$out/studio"
 luthier bake materials/red-lacquer.toml --model lobes --functions environment --target wgsl --out "$out/lit" --quiet

@@ -22,7 +22,7 @@ pub const MANIFEST_SCHEMA: u32 = 4;
 pub struct Manifest {
     /// [`MANIFEST_SCHEMA`].
     pub schema: u32,
-    /// Program and version: `luthier 0.1.0`.
+    /// Program and version: `luthier 0.2.0`.
     pub generator: String,
     /// The materials, in the order of their numbers in the shader.
     pub materials: Vec<MaterialEntry>,

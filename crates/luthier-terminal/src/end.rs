@@ -10,12 +10,15 @@ use crate::output::{asks_for, complain, has_events, print, tell};
 impl Failure {
     /// Prints the failure, also as JSON if that was asked for, and returns the exit code.
     pub fn exit(&self) -> ExitCode {
-        let Some(failed) = self.as_json() else {
-            return ExitCode::from(u8::from(matches!(self, Self::Verdict)));
-        };
+        ExitCode::from(self.told())
+    }
+
+    /// Prints the failure as [`Failure::exit`] does, and returns the exit code as a number.
+    pub(crate) fn told(&self) -> u8 {
+        let Some(failed) = self.as_json() else { return u8::from(matches!(self, Self::Verdict)) };
         print_json(&failed);
         self.tell();
-        ExitCode::from(failed["code"].as_u64().map_or(1, |code| code as u8))
+        failed["code"].as_u64().map_or(1, |code| code as u8)
     }
 
     /// Prints the failure on standard error.

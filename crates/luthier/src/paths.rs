@@ -7,6 +7,17 @@ use crate::Error;
 
 /// Finds the files of paths: files, and the `*.toml` of folders. Each is listed once, in the order given and by name within a folder.
 ///
+/// ```
+/// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+/// # let folder = tempfile::tempdir()?;
+/// # std::fs::write(folder.path().join("chalk.toml"), chalk)?;
+/// std::fs::write(folder.path().join("notes.md"), "")?;
+///
+/// let files = luthier::find(&[folder.path().to_owned(), folder.path().join("chalk.toml")])?;
+/// assert_eq!(files, [folder.path().join("chalk.toml")]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`Error::File`], [`Error::NoFiles`].
 pub fn find(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
@@ -23,6 +34,18 @@ pub fn find(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
 }
 
 /// The `*.toml` of the folders inside the folders among `paths`, each with the name and the path of its folder, in their order.
+///
+/// ```
+/// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+/// # let folder = tempfile::tempdir()?;
+/// let inner = folder.path().join("minerals");
+/// std::fs::create_dir(&inner)?;
+/// std::fs::write(inner.join("chalk.toml"), chalk)?;
+///
+/// let found = luthier::inner_files(&[folder.path().to_owned()])?;
+/// assert_eq!(found, [("minerals".to_owned(), inner.clone(), inner.join("chalk.toml"))]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// [`Error::File`].

@@ -21,6 +21,21 @@ pub(crate) struct Read {
 
 /// Reads the texels that ship of a picture that a material names, relative to the material's file.
 ///
+/// ```
+/// use luthier_lut::Image;
+/// use luthier_material::{PictureRef, TexelUse};
+/// use luthier_texture::png;
+///
+/// let folder = tempfile::tempdir()?;
+/// let grain = Image { width: 2, height: 1, channels: 1, data: vec![0.0, 1.0] };
+/// std::fs::write(folder.path().join("grain.png"), png::encode_gray(&grain)?)?;
+///
+/// let oak = folder.path().join("oak.toml").display().to_string();
+/// let picture = luthier::read_picture(&oak, &PictureRef::plain("grain.png"), TexelUse::Number)?;
+/// assert_eq!((picture.size(), picture.channels), ([2, 1], 1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// Why it cannot be used, in words.
 pub fn read_picture(material: &str, picture: &PictureRef, texels: TexelUse) -> Result<Picture, String> {
@@ -28,6 +43,21 @@ pub fn read_picture(material: &str, picture: &PictureRef, texels: TexelUse) -> R
 }
 
 /// Reads a picture of one number that a material names, relative to the material's file.
+///
+/// ```
+/// use luthier_lut::Image;
+/// use luthier_material::PictureRef;
+/// use luthier_texture::png;
+///
+/// let folder = tempfile::tempdir()?;
+/// let grain = Image { width: 2, height: 1, channels: 1, data: vec![0.0, 1.0] };
+/// std::fs::write(folder.path().join("grain.png"), png::encode_gray(&grain)?)?;
+///
+/// let oak = folder.path().join("oak.toml").display().to_string();
+/// let image = luthier::read_image(&oak, &PictureRef::plain("grain.png"))?;
+/// assert_eq!(image.data, [0.0, 1.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// Why it cannot be used, in words.

@@ -41,6 +41,16 @@ impl Shading {
     }
 
     /// The model by which a material is shaded.
+    ///
+    /// ```
+    /// use luthier::{Shading, ShadingModel};
+    /// # let text = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.3\n";
+    ///
+    /// let coat = luthier::parse("coat.toml", text)?;
+    /// assert_eq!(Shading::default().model(&coat), ShadingModel::Lobes);
+    /// assert_eq!(Shading { no_fit: true, ..Shading::default() }.model(&coat), coat.model_without_fit());
+    /// # Ok::<(), luthier::Error>(())
+    /// ```
     pub fn model(&self, material: &Material) -> ShadingModel {
         self.model_of(material).unwrap_or_else(|| material.model())
     }
@@ -58,6 +68,16 @@ impl Shading {
     }
 
     /// Warnings about features that the model leaves out, and refusals.
+    ///
+    /// ```
+    /// use luthier::{Shading, ShadingModel};
+    /// # let text = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.3\n";
+    ///
+    /// let coat = luthier::parse("coat.toml", text)?;
+    /// let fitted = Shading { model: Some(ShadingModel::Lobes), no_fit: true, ..Shading::default() };
+    /// assert!(fitted.doubts(&coat)[0].is_error(), "a fitted model without a fit");
+    /// # Ok::<(), luthier::Error>(())
+    /// ```
     pub fn doubts(&self, material: &Material) -> Vec<Diagnostic> {
         let model = self.model_of(material);
         let chosen = self.reflectance.map(|_| {

@@ -1,5 +1,6 @@
-//! What `luthier bake` wrote, read with a JSON, a KTX2 and a zstd crate.
+//! What `luthier bake` or a build script wrote, read with a JSON, a KTX2 and a zstd crate.
 
+use std::borrow::Cow;
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -7,10 +8,17 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::Value;
 
-/// A folder with a manifest.
+/// Files with a manifest.
 pub struct Bake {
-    folder: PathBuf,
+    files: Files,
     manifest: Value,
+}
+
+/// Where the files of a bake are.
+enum Files {
+    Folder(PathBuf),
+    /// Inside the program, each with its path.
+    BuiltIn(&'static [(&'static str, &'static [u8])]),
 }
 
 /// A line of `bindings[]`: what group 0 of the shader expects at a number.
@@ -37,11 +45,18 @@ pub struct Texels {
 
 impl Bake {
     pub fn open(folder: &Path) -> Result<Self> {
-        let path = folder.join("manifest.json");
-        let text = fs::read_to_string(&path).with_context(|| format!("{}: bake first", path.display()))?;
-        let manifest: Value = serde_json::from_str(&text)?;
+        Self::of(Files::Folder(folder.to_owned())).context("bake first")
+    }
+
+    /// `FILES` of the module that luthier-build writes.
+    pub fn built_in(files: &'static [(&'static str, &'static [u8])]) -> Result<Self> {
+        Self::of(Files::BuiltIn(files))
+    }
+
+    fn of(files: Files) -> Result<Self> {
+        let manifest: Value = serde_json::from_slice(&files.read("manifest.json")?)?;
         ensure!(manifest["schema"] == 4, "this program reads schema 4 of the manifest, not {}", manifest["schema"]);
-        Ok(Self { folder: folder.to_owned(), manifest })
+        Ok(Self { files, manifest })
     }
 
     /// Number of a material in the shader: its place in `materials[]`.
@@ -66,19 +81,19 @@ impl Bake {
         let shaders = self.entries("shaders")?;
         let found = shaders.iter().find(|shader| shader["target"] == "wgsl" && shader["form"] == "baked");
         let path = text(&found.context("no WGSL in the bake")?["file"]["path"])?;
-        Ok(fs::read_to_string(self.folder.join(path))?)
+        Ok(String::from_utf8(self.files.read(path)?.into_owned())?)
     }
 
     /// The material buffer, ready to upload.
     pub fn material_buffer(&self) -> Result<Vec<u8>> {
-        Ok(fs::read(self.folder.join(text(&self.manifest["material_buffer"]["path"])?))?)
+        Ok(self.files.read(text(&self.manifest["material_buffer"]["path"])?)?.into_owned())
     }
 
     /// The texels of a table: one level, two dimensions.
     pub fn table(&self, kind: &str) -> Result<Texels> {
         let found = self.entries("tables")?.iter().find(|table| table["kind"] == kind);
         let entry = found.with_context(|| format!("no table `{kind}` in the bake"))?;
-        texels(&self.folder.join(text(&entry["texture"]["path"])?), text(&entry["format"])?)
+        texels(&self.files.read(text(&entry["texture"]["path"])?)?, text(&entry["format"])?)
     }
 
     fn entries(&self, field: &str) -> Result<&[Value]> {
@@ -86,15 +101,31 @@ impl Bake {
     }
 }
 
+impl Files {
+    /// The bytes of a file, by its path in the manifest.
+    fn read(&self, path: &str) -> Result<Cow<'static, [u8]>> {
+        match self {
+            Self::Folder(folder) => Ok(Cow::Owned(read(&folder.join(path))?)),
+            Self::BuiltIn(files) => {
+                let found = files.iter().find(|(known, _)| *known == path);
+                Ok(Cow::Borrowed(found.with_context(|| format!("no file `{path}` in the program"))?.1))
+            }
+        }
+    }
+}
+
 /// A cube of `luthier environment`: `environment` with its levels, or `irradiance`.
 pub fn cube(folder: &Path, content: &str) -> Result<Texels> {
-    texels(&folder.join(format!("{content}-cube.ktx2")), "rgba16float")
+    texels(&read(&folder.join(format!("{content}-cube.ktx2")))?, "rgba16float")
+}
+
+fn read(path: &Path) -> Result<Vec<u8>> {
+    fs::read(path).with_context(|| path.display().to_string())
 }
 
 /// The texels of a file, of which each level may be compressed with zstd.
-fn texels(path: &Path, format: &str) -> Result<Texels> {
-    let file = fs::read(path).with_context(|| path.display().to_string())?;
-    let ktx2 = ktx2::Reader::new(file.as_slice())?;
+fn texels(file: &[u8], format: &str) -> Result<Texels> {
+    let ktx2 = ktx2::Reader::new(file)?;
     let header = ktx2.header();
     let mut bytes = Vec::new();
     for level in ktx2.levels() {

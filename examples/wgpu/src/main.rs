@@ -1,7 +1,7 @@
 //! A ball of a baked material, rendered with wgpu into a PNG.
 //!
 //! `luthier-example-wgpu BAKE SCENE PNG [ENVIRONMENT]`: the folder of `luthier bake`, `scene.json`, the picture to write; for a bake with
-//! `--functions environment` the folder of `luthier environment`.
+//! `--functions environment` the folder of `luthier environment`. `-` in place of a folder is the bake of `build.rs`, which is part of the program.
 
 mod bake;
 mod materials;
@@ -18,6 +18,11 @@ use bake::Bake;
 use materials::Materials;
 use scene::{Scene, ball};
 
+/// The bake of `build.rs`.
+mod materials_of_build {
+    include!(concat!(env!("OUT_DIR"), "/materials.rs"));
+}
+
 /// Written with the sRGB transfer function, read back as it is.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
@@ -27,7 +32,10 @@ fn main() -> Result<()> {
         bail!("usage: luthier-example-wgpu BAKE SCENE PNG [ENVIRONMENT]");
     };
     let surroundings = surroundings.first().map(Path::new);
-    let bake = Bake::open(Path::new(folder))?;
+    let bake = match folder.as_str() {
+        "-" => Bake::built_in(materials_of_build::FILES)?,
+        folder => Bake::open(Path::new(folder))?,
+    };
     let scene = Scene::open(Path::new(scene))?;
     let material = bake.material(&scene.material)?;
 

@@ -22,7 +22,7 @@ Exit codes:
   1  an input is invalid, or a budget is exceeded or cannot be met
   2  the command line is wrong
   3  a file cannot be read or written
-  4  no usable graphics adapter, driver or display, or it failed
+  4  no usable graphics adapter, driver or display, or it failed, or this build has no code for one
   130  interrupted by SIGINT, SIGTERM or SIGHUP; no file is half written
 
 With --json a failure is one JSON object on standard output, besides the sentence on standard error:

@@ -40,6 +40,18 @@ fn shader(set: &MaterialSet, form: Form, interface: &Interface, target: Target) 
 /// A package of some materials of another, by number: with all tables, without surfaces, and with shaders for these materials alone, in the forms that some of
 /// them have.
 ///
+/// ```
+/// use luthier::{Bake, Form, MemoryStore, of_materials, parse};
+///
+/// let plain = |name: &str| format!("schema = 1\nname = \"{name}\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n");
+/// let materials = [parse("chalk.toml", &plain("chalk"))?, parse("plaster.toml", &plain("plaster"))?];
+/// let all = Bake::wgsl(&[Form::Full]).package(&materials, &MemoryStore::default())?;
+/// let plaster = of_materials(&all, 1..2)?;
+/// assert_eq!(plaster.manifest.material_index("plaster"), Some(0));
+/// assert!(!plaster.wgsl(Form::Full)?.contains("CHALK"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Shader`].
 pub fn of_materials(all: &Package, numbers: Range<usize>) -> Result<Package, Error> {

@@ -57,6 +57,14 @@ pub(super) fn material_entries(
 
 /// The hash of a material file and of the files that it names: of its text, followed by the hash of each file.
 ///
+/// ```
+/// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+/// // Neither a picture nor a table of an index: the hash is that of the text.
+/// let material = luthier::parse("chalk.toml", chalk)?;
+/// assert_eq!(luthier::source_hash(&material)?, luthier::sha256(chalk.as_bytes()));
+/// # Ok::<(), luthier::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::File`].
 pub fn source_hash(material: &Material) -> Result<String, Error> {

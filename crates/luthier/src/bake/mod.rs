@@ -69,6 +69,15 @@ impl Default for Bake<'_> {
 
 impl<'a> Bake<'a> {
     /// A package with shaders in WGSL only.
+    ///
+    /// ```
+    /// use luthier::{Bake, Form, MemoryStore};
+    /// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+    ///
+    /// let package = Bake::wgsl(&[Form::Full]).package(&[luthier::parse("chalk.toml", chalk)?], &MemoryStore::default())?;
+    /// assert_eq!((package.shaders.len(), package.tables.len()), (1, 0));
+    /// # Ok::<(), luthier::Error>(())
+    /// ```
     pub fn wgsl(forms: &[Form]) -> Self {
         let shading = Shading { forms: forms.to_vec(), ..Shading::default() };
         Self { shading, targets: vec![Target::Wgsl], ..Self::default() }
@@ -76,6 +85,16 @@ impl<'a> Bake<'a> {
 
     /// A package for a renderer: all forms of the shader in WGSL, with functions for a blurred environment and for drawn directions.
     /// [`lit`](crate::lit) gives its materials the tables that such a renderer reads.
+    ///
+    /// ```
+    /// use luthier::{Bake, Form, MemoryStore};
+    /// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+    ///
+    /// let materials = luthier::lit(&[luthier::parse("chalk.toml", chalk)?]);
+    /// let package = Bake::lit().in_forms(&[Form::Full]).package(&materials, &MemoryStore::default())?;
+    /// assert!(package.wgsl(Form::Full)?.contains("fn luthier_sample("));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn lit() -> Self {
         Self { functions: [FunctionGroup::Environment, FunctionGroup::Sample].into_iter().collect(), ..Self::wgsl(&[]) }
     }
@@ -88,6 +107,20 @@ impl<'a> Bake<'a> {
     }
 
     /// Bakes the materials and surfaces of sources. Call [`Sources::refuse`] first: its diagnostics have places in the files.
+    ///
+    /// ```
+    /// use luthier::{Bake, Form, MemoryStore, Shading, Sources};
+    /// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+    /// # let folder = tempfile::tempdir()?;
+    /// # std::fs::write(folder.path().join("chalk.toml"), chalk)?;
+    ///
+    /// let mut sources = Sources::read([folder.path()])?;
+    /// sources.refuse(&Shading::default());
+    /// let package = Bake::wgsl(&[Form::Full]).of(&sources, &MemoryStore::default())?;
+    /// package.write(&folder.path().join("out"))?;
+    /// assert!(folder.path().join("out/shaders/full.wgsl").exists());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`Error`]; [`Error::Refused`] where a source is unusable, or is a scene: luthier-scene chooses the models of its materials.
@@ -137,6 +170,20 @@ impl<'a> Bake<'a> {
 
     /// Computes a share of a bake's jobs into a store, where the bake that follows finds the results.
     ///
+    /// ```
+    /// use luthier::{Bake, Form, MemoryStore, Share};
+    /// # let text = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n[bake]\nmodel = \"microfacet\"\n";
+    ///
+    /// // Two machines with one store, one after the other.
+    /// let (materials, store) = ([luthier::parse("gold.toml", text)?], MemoryStore::default());
+    /// let bake = Bake::wgsl(&[Form::Baked]);
+    /// bake.share(&materials, &store, Share { index: 1, count: 2 })?;
+    /// bake.share(&materials, &store, Share { index: 2, count: 2 })?;
+    /// let package = bake.package(&materials, &store)?;
+    /// assert_eq!(package, bake.package(&materials, &MemoryStore::default())?);
+    /// # Ok::<(), luthier::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error`].
     pub fn share(&self, materials: &[Material], store: &dyn Store, share: Share) -> Result<(), Error> {
@@ -148,6 +195,18 @@ impl<'a> Bake<'a> {
     }
 
     /// The jobs that a bake would run because a store lacks their results.
+    ///
+    /// ```
+    /// use luthier::{Bake, Form, MemoryStore};
+    /// # let text = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n[bake]\nmodel = \"microfacet\"\n";
+    ///
+    /// let (materials, store) = ([luthier::parse("gold.toml", text)?], MemoryStore::default());
+    /// let bake = Bake::wgsl(&[Form::Baked]);
+    /// assert!(!bake.missing(&materials, &store)?.jobs.is_empty());
+    /// bake.package(&materials, &store)?;
+    /// assert!(bake.missing(&materials, &store)?.jobs.is_empty());
+    /// # Ok::<(), luthier::Error>(())
+    /// ```
     ///
     /// # Errors
     /// [`Error`].
@@ -201,6 +260,15 @@ impl<'a> Bake<'a> {
 
 /// The layout of rows that functions and languages of shaders decide: a sampler's where a view is prepared once for many lights (on an NVIDIA H200 its
 /// reads then hide behind the arithmetic, and those of a buffer add to it), and where a language has no storage buffers. Else the materials decide.
+///
+/// ```
+/// use luthier::{Functions, Target, row_layout};
+/// use luthier_lut::RowLayout;
+///
+/// // WebGL 2 has no storage buffers. In WGSL the materials decide.
+/// assert_eq!(row_layout(&Functions::default(), &[Target::Wgsl, Target::GlslEs300]), Some(RowLayout::Filtered));
+/// assert_eq!(row_layout(&Functions::default(), &[Target::Wgsl]), None);
+/// ```
 pub fn row_layout(functions: &Functions, targets: &[Target]) -> Option<RowLayout> {
     let has_buffers = !targets.contains(&Target::GlslEs300);
     (!functions.is_eval_alone() || !has_buffers).then_some(RowLayout::Filtered)
@@ -208,6 +276,19 @@ pub fn row_layout(functions: &Functions, targets: &[Target]) -> Option<RowLayout
 
 /// The manifest of a bake that is not made: materials, tables without tiles, searches, no files. This takes little computing, unless a material has a
 /// budget or lobes; then it helps if the store has their results.
+///
+/// ```
+/// use luthier::{MemoryStore, Options};
+/// # let text = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n[bake]\nmodel = \"microfacet\"\n";
+///
+/// let gold = luthier::parse("gold.toml", text)?;
+/// let manifest = luthier::outline(&[gold], &Options::default(), &MemoryStore::default())?;
+/// for table in &manifest.tables {
+///     println!("{}: {:?}, {} bytes", table.kind.name(), table.format, table.texel_bytes);
+/// }
+/// assert!(manifest.shaders.is_empty() && manifest.tables.iter().all(|table| table.tiles.is_empty()));
+/// # Ok::<(), luthier::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`Error`].
@@ -228,6 +309,15 @@ const ENVIRONMENT_TABLES: [TableKind; 3] = [TableKind::Fresnel, TableKind::Fgd, 
 const ENERGY_SIZE: [u32; 2] = [32, 16];
 
 /// Copies of materials that also ask for the tables that a blurred environment reads, as far as their slope distributions have such tables.
+///
+/// ```
+/// use luthier_lut::TableKind;
+/// # let text = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n[bake]\nmodel = \"microfacet\"\n";
+///
+/// let lit = luthier::lit(&[luthier::parse("gold.toml", text)?]);
+/// assert!(lit[0].bake.asks_for(TableKind::Fgd), "the albedo, by which an environment is weighed");
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn lit(materials: &[Material]) -> Vec<Material> {
     let mut lit = materials.to_vec();
     let is_of_pictures =

@@ -40,6 +40,17 @@ const PATHS: u64 = 4096;
 const SEED: u64 = 37;
 
 /// Albedos of a material at one angle, in the channel in which they differ the most.
+///
+/// ```
+/// use luthier::{ShadingModel, refusals};
+/// # let text = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.3\n";
+///
+/// let coat = luthier::parse("coat.toml", text)?;
+/// for at in refusals::returned(&coat, ShadingModel::WeidlichWilkie) {
+///     assert!(at.simulated.is_some_and(|simulated| simulated < 1.0), "at {} degrees", at.angle_deg);
+/// }
+/// # Ok::<(), luthier::Error>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Returned {
     /// Share of the light that the model returns.
@@ -71,6 +82,17 @@ impl Returned {
 
 /// A warning if a model returns more light than falls in, or if its albedo is wrong. For one interface with a named model, an error above a tenth
 /// counts; for a model that stands in for `lobes`, any error. `asked` is the model of the command line.
+///
+/// ```
+/// use luthier::{ShadingModel, refusals};
+/// # let text = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.3\n";
+///
+/// // A closed form lacks 1/n^2 below a coat, and gold is bright.
+/// let coat = luthier::parse("coat.toml", text)?;
+/// assert!(refusals::of_energy(&coat, Some(ShadingModel::WeidlichWilkie)).is_some());
+/// assert!(refusals::of_energy(&coat, None).is_none(), "`lobes` is fitted to a simulation");
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     if !is_questionable(material, model) {
@@ -123,6 +145,16 @@ fn is_questionable(material: &Material, model: ShadingModel) -> bool {
 
 /// Albedos of a material in a model, angle by angle, at white texels of its maps. Where a texture decides what is metal, places without metal are
 /// measured, too.
+///
+/// ```
+/// use luthier::{ShadingModel, refusals};
+/// # let text = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.3\n";
+///
+/// let coat = luthier::parse("coat.toml", text)?;
+/// let angles: Vec<f64> = refusals::returned(&coat, ShadingModel::Elek).iter().map(|at| at.angle_deg).collect();
+/// assert_eq!(angles, [0.0, 30.0, 50.0, 70.0, 80.0]);
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn returned(material: &Material, model: ShadingModel) -> Vec<Returned> {
     albedos(material, model, true)
 }

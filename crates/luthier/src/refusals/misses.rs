@@ -8,6 +8,16 @@ use crate::pictures::read_image;
 
 /// Warnings for layers of a bake whose tiles miss their aim, or are off by more than a tenth of their largest value, each at the line of its layer.
 /// Materials are found by name.
+///
+/// ```
+/// use luthier::{Bake, Form, MemoryStore, refusals};
+/// # let text = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n[bake]\nmodel = \"microfacet\"\n";
+///
+/// let materials = [luthier::parse("gold.toml", text)?];
+/// let package = Bake::wgsl(&[Form::Baked]).package(&materials, &MemoryStore::default())?;
+/// assert!(refusals::misses(&package.manifest, &materials).is_empty());
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn misses(manifest: &Manifest, materials: &[Material]) -> Vec<Diagnostic> {
     let mut warnings = Vec::new();
     for table in &manifest.tables {
@@ -24,6 +34,14 @@ pub fn misses(manifest: &Manifest, materials: &[Material]) -> Vec<Diagnostic> {
 }
 
 /// Warnings for layers whose rows will miss their aim, as far as this is known without a bake.
+///
+/// ```
+/// # let text = "schema = 1\nname = \"gold\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.2\n[bake]\nmodel = \"microfacet\"\n";
+/// // Rows of gold are smooth. Those of a medium that mirrors beyond a critical angle have a kink.
+/// let gold = luthier::parse("gold.toml", text)?;
+/// assert!(luthier::refusals::foreseen_misses(&gold).is_empty());
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn foreseen_misses(material: &Material) -> Vec<Diagnostic> {
     // Other functions report why a material cannot be baked.
     let rows = luthier_bake::kinked_rows(material, &read_image).unwrap_or_default().into_iter();

@@ -39,6 +39,17 @@ pub fn of_model(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
 }
 
 /// Warnings for a material in a scene: only values outside the model's domain. The scene picks the model, so missing features are not reported.
+///
+/// ```
+/// use luthier::{ShadingModel, refusals};
+///
+/// let text = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 2.4\nalpha = 0.1\n\
+///             [[layer]]\ntype = \"conductor\"\nior = \"ag\"\nalpha = 0.3\n";
+/// let coat = luthier::parse("coat.toml", text)?;
+/// let warnings = refusals::of_domain(&coat, Some(ShadingModel::WeidlichWilkie));
+/// assert!(warnings[0].message.contains("2.4 is outside the domain"), "{warnings:?}");
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn of_domain(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     let mut found: Vec<Diagnostic> =

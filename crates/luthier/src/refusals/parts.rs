@@ -17,6 +17,16 @@ use super::beams::{self, of_beams};
 
 /// Errors for parts that a model lacks, and for films where the chosen curve of a reflectance has none; warnings with the effect of other parts.
 /// `asked` is the model of the command line.
+///
+/// ```
+/// use luthier::{ShadingModel, refusals};
+/// # let text = "schema = 1\nname = \"dim\"\n[[layer]]\ntype = \"conductor\"\nf0 = 0.9\nalpha = 0.5\n[bake]\nmasking = \"implicit\"\nmodel = \"microfacet\"\n";
+///
+/// // The file chooses a masking, which `belcour` lets no file choose.
+/// let dim = luthier::parse("dim.toml", text)?;
+/// assert!(refusals::of_parts(&dim, Some(ShadingModel::Belcour)).iter().any(|error| error.is_error()));
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     let mut doubts = Vec::new();
@@ -38,6 +48,16 @@ pub fn of_parts(material: &Material, asked: Option<ShadingModel>) -> Vec<Diagnos
 }
 
 /// The parts of a model that a material chooses, for the f64 twin.
+///
+/// ```
+/// use luthier::{ShadingModel, refusals};
+/// use luthier_manifest::Masking;
+/// # let text = "schema = 1\nname = \"dim\"\n[[layer]]\ntype = \"conductor\"\nf0 = 0.9\nalpha = 0.5\n[bake]\nmasking = \"implicit\"\nmodel = \"microfacet\"\n";
+///
+/// let dim = luthier::parse("dim.toml", text)?;
+/// assert_eq!(refusals::parts_of(&dim, ShadingModel::Microfacet).masking, Masking::Implicit);
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn parts_of(material: &Material, model: ShadingModel) -> Parts {
     let bake = &material.bake;
     let masking = bake.masking.filter(|_| model.takes(ModelPart::Masking)).unwrap_or_default();
@@ -57,6 +77,14 @@ pub fn parts_of(material: &Material, model: ShadingModel) -> Parts {
 const COSINES: u32 = 100;
 
 /// Errors for parts that a material of a scene chooses: its model is the scene's choice.
+///
+/// ```
+/// # let text = "schema = 1\nname = \"dim\"\n[[layer]]\ntype = \"conductor\"\nf0 = 0.9\nalpha = 0.5\n[bake]\nmasking = \"implicit\"\nmodel = \"microfacet\"\n";
+/// let dim = luthier::parse("dim.toml", text)?;
+/// let errors = luthier::refusals::of_scene(&dim);
+/// assert!(errors[0].message.contains("a scene chooses the models of its materials"));
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn of_scene(material: &Material) -> Vec<Diagnostic> {
     let keys = [
         ("masking", material.bake.masking.is_some()),
@@ -110,6 +138,16 @@ const OF_ANY_SLOPES: [&str; 8] =
 
 /// An error where a function in f64, given by name, cannot use the distribution of a layer. A model with a shader cannot where its shader cannot;
 /// other functions cannot if they walk between facets, draw visible normals or follow statistics of lobes.
+///
+/// ```
+/// use luthier::refusals;
+///
+/// let text = "schema = 1\nname = \"steel\"\n[[layer]]\ntype = \"conductor\"\nior = \"fe\"\nabc = { b = 100.0, c = 0.8 }\n";
+/// let steel = luthier::parse("steel.toml", text)?;
+/// assert!(refusals::of_function(&steel, "layered-mc").is_some(), "its facets cannot be walked between");
+/// assert!(refusals::of_function(&steel, "elek").is_none());
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn of_function(material: &Material, name: &str) -> Option<Diagnostic> {
     if let Some(model) = ShadingModel::from_name(name) {
         return of_distribution(material, model);

@@ -6,6 +6,14 @@ use luthier_material::{Diagnostic, Material, NamedImage, PictureRef, Severity, T
 use crate::pictures::{self, Read};
 
 /// Diagnostics of the pictures that a material names.
+///
+/// ```
+/// let text = "schema = 1\nname = \"oak\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\nmaps = { albedo = \"grain.png\" }\n";
+/// let oak = luthier::parse("oak.toml", text)?;
+/// let errors = luthier::refusals::of_pictures(&oak);
+/// assert!(errors[0].is_error() && errors[0].line == 6, "there is no grain.png");
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn of_pictures(material: &Material) -> Vec<Diagnostic> {
     material.images().iter().flat_map(|image| told(material, image)).collect()
 }

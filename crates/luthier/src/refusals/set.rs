@@ -8,6 +8,14 @@ use luthier_material::{Diagnostic, Material, Severity};
 use crate::pictures::read_image;
 
 /// Diagnostics of materials as a set, each with the number of its material.
+///
+/// ```
+/// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+/// let twice = [luthier::parse("chalk.toml", chalk)?, luthier::parse("copy.toml", chalk)?];
+/// let (number, error) = &luthier::refusals::of_set(&twice)[0];
+/// assert_eq!((*number, error.label.as_str()), (1, "copy.toml"), "two materials of one name");
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn of_set(materials: &[Material]) -> Vec<(usize, Diagnostic)> {
     let mut found = Vec::new();
     for error in luthier_bake::check(materials, &luthier_bake::Options::default()).err().unwrap_or_default() {
@@ -41,6 +49,12 @@ pub fn of_set(materials: &[Material]) -> Vec<(usize, Diagnostic)> {
 }
 
 /// An error of the first material if the material buffer or a texture cannot hold all materials. A bake finds this itself when it plans its tables.
+///
+/// ```
+/// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+/// assert!(luthier::refusals::too_many(&[luthier::parse("chalk.toml", chalk)?]).is_none());
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn too_many(materials: &[Material]) -> Option<Diagnostic> {
     let options = luthier_bake::Options { search: false, fits: false, ..luthier_bake::Options::default() };
     match luthier_bake::outline_with(materials, &options, &read_image, &MemoryStore::default()) {

@@ -28,6 +28,15 @@ pub struct TomlFile {
 impl TomlFile {
     /// Reads a file.
     ///
+    /// ```
+    /// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+    /// # let folder = tempfile::tempdir()?;
+    /// # std::fs::write(folder.path().join("chalk.toml"), chalk)?;
+    /// let file = luthier::TomlFile::read(&folder.path().join("chalk.toml"))?;
+    /// assert_eq!(file.bytes, chalk.as_bytes());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::File`].
     pub fn read(path: &Path) -> Result<Self, Error> {

@@ -44,6 +44,17 @@ pub struct Files {
 impl Files {
     /// Reads files, and the `*.toml` of folders.
     ///
+    /// ```
+    /// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+    /// # let folder = tempfile::tempdir()?;
+    /// # std::fs::write(folder.path().join("chalk.toml"), chalk)?;
+    /// std::fs::write(folder.path().join("shelf.toml"), "scene = 1\nname = \"shelf\"\n")?;
+    ///
+    /// let files = luthier::Files::read(&[folder.path().to_owned()])?;
+    /// assert_eq!((files.materials.len(), files.scenes.len()), (1, 1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::File`], [`Error::NoFiles`]. A file that a surface names and that cannot be read is an error of the surface.
     pub fn read(paths: &[PathBuf]) -> Result<Self, Error> {
@@ -86,6 +97,15 @@ impl Files {
     }
 
     /// Sorts files by kind, and adds the materials that surfaces name.
+    ///
+    /// ```
+    /// use luthier::{Files, TomlFile};
+    /// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+    ///
+    /// // A file that an editor holds, with its unsaved text.
+    /// let file = TomlFile { path: "chalk.toml".into(), bytes: chalk.as_bytes().to_vec() };
+    /// assert_eq!(Files::of(vec![file]).materials.len(), 1);
+    /// ```
     pub fn of(files: Vec<TomlFile>) -> Self {
         let mut all = Self::default();
         for file in files {
@@ -100,6 +120,14 @@ impl Files {
     }
 
     /// Moves the scenes to the materials, where each has an error once it is parsed.
+    ///
+    /// ```
+    /// use luthier::{Files, Sources, TomlFile};
+    ///
+    /// let shelf = TomlFile { path: "shelf.toml".into(), bytes: b"scene = 1\nname = \"shelf\"\n".to_vec() };
+    /// let sources = Sources::of(Files::of(vec![shelf]).without_scenes());
+    /// assert!(sources.diagnostics().any(|error| error.message.contains("scene")));
+    /// ```
     #[must_use]
     pub fn without_scenes(mut self) -> Self {
         self.materials.append(&mut self.scenes);
@@ -107,6 +135,15 @@ impl Files {
     }
 
     /// The paths of its files.
+    ///
+    /// ```
+    /// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+    /// # let folder = tempfile::tempdir()?;
+    /// # std::fs::write(folder.path().join("chalk.toml"), chalk)?;
+    /// let files = luthier::Files::read(&[folder.path().to_owned()])?;
+    /// assert_eq!(files.paths().collect::<Vec<_>>(), [folder.path().join("chalk.toml")]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
         let surfaces = self.surfaces.iter().map(|surface| surface.path.as_path());
         let files = self.materials.iter().map(|file| file.path.as_path());

@@ -61,6 +61,15 @@ impl Source {
 
     /// Reads and validates one file.
     ///
+    /// ```
+    /// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+    /// # let folder = tempfile::tempdir()?;
+    /// # std::fs::write(folder.path().join("chalk.toml"), chalk)?;
+    /// let source = luthier::Source::read(&folder.path().join("chalk.toml"))?;
+    /// assert_eq!(source.material().map(|material| material.name.as_str()), Some("chalk"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::File`], of the file itself: faults of its text are in [`Source::parsed`].
     pub fn read(path: &Path) -> Result<Self, Error> {
@@ -68,6 +77,13 @@ impl Source {
     }
 
     /// Validates a file that was read.
+    ///
+    /// ```
+    /// use luthier::{Source, TomlFile};
+    ///
+    /// let source = Source::of(TomlFile { path: "umber.toml".into(), bytes: b"name = \"umber\xff\"".to_vec() });
+    /// assert_eq!((source.diagnostics()[0].line, source.diagnostics()[0].column), (1, 14), "no UTF-8");
+    /// ```
     pub fn of(file: TomlFile) -> Self {
         let path = file.path.clone();
         match file.text() {
@@ -123,6 +139,15 @@ pub fn parse(label: &str, text: &str) -> Result<Material, Error> {
 
 /// Reads files, and the `*.toml` of folders, as materials. Scenes and surfaces have errors that say what they are.
 ///
+/// ```
+/// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+/// # let folder = tempfile::tempdir()?;
+/// # std::fs::write(folder.path().join("chalk.toml"), chalk)?;
+/// let sources = luthier::read_materials(&[folder.path().to_owned()])?;
+/// assert!(sources[0].diagnostics().is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 /// [`Error::File`], [`Error::NoFiles`].
 pub fn read_materials(paths: &[PathBuf]) -> Result<Vec<Source>, Error> {
@@ -131,6 +156,13 @@ pub fn read_materials(paths: &[PathBuf]) -> Result<Vec<Source>, Error> {
 }
 
 /// The files that a material names, beside its own.
+///
+/// ```
+/// let text = "schema = 1\nname = \"oak\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\nmaps = { albedo = \"grain.png\" }\n";
+/// let oak = luthier::parse("wood/oak.toml", text)?;
+/// assert_eq!(luthier::named_files(&oak).collect::<Vec<_>>(), [std::path::Path::new("wood/grain.png")]);
+/// # Ok::<(), luthier::Error>(())
+/// ```
 pub fn named_files(material: &Material) -> impl Iterator<Item = PathBuf> {
     material.files.iter().map(|file| paths::beside(&material.source, file))
 }

@@ -61,6 +61,14 @@ impl Sources {
     }
 
     /// Parses files. Materials are parsed side by side.
+    ///
+    /// ```
+    /// use luthier::{Files, Sources, TomlFile};
+    /// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+    ///
+    /// let file = TomlFile { path: "chalk.toml".into(), bytes: chalk.as_bytes().to_vec() };
+    /// assert!(Sources::of(Files::of(vec![file])).is_usable());
+    /// ```
     pub fn of(files: Files) -> Self {
         let Files { scenes, surfaces, materials } = files;
         Self {
@@ -72,6 +80,17 @@ impl Sources {
 
     /// Makes sources unusable that cannot be baked, and adds warnings about features that a model leaves out. Pictures are read; nothing is
     /// simulated.
+    ///
+    /// ```
+    /// use luthier::{Files, Shading, ShadingModel, Sources, TomlFile};
+    /// # let text = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.3\n";
+    /// # let file = TomlFile { path: "coat.toml".into(), bytes: text.as_bytes().to_vec() };
+    ///
+    /// let mut sources = Sources::of(Files::of(vec![file]));
+    /// sources.refuse(&Shading { model: Some(ShadingModel::Microfacet), ..Shading::default() });
+    /// let warning = sources.diagnostics().next().unwrap();
+    /// assert!(warning.message.contains("leaves out"), "{warning}");
+    /// ```
     pub fn refuse(&mut self, shading: &Shading) {
         refuse(&mut self.materials, |material| shading.doubts(material));
         self.refuse_surfaces();
@@ -84,12 +103,36 @@ impl Sources {
 
     /// Adds warnings where a model returns too much light, or light that differs from a simulation. This takes some hundredths of a second for each
     /// material. Call [`Sources::refuse`] first.
+    ///
+    /// ```
+    /// use luthier::{Files, Shading, ShadingModel, Sources, TomlFile};
+    /// # let text = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.3\n";
+    /// # let file = TomlFile { path: "coat.toml".into(), bytes: text.as_bytes().to_vec() };
+    ///
+    /// let (mut sources, shading) = (Sources::of(Files::of(vec![file])), Shading { model: Some(ShadingModel::WeidlichWilkie), ..Shading::default() });
+    /// sources.refuse(&shading);
+    /// sources.doubt_energy(&shading);
+    /// assert!(sources.diagnostics().any(|warning| warning.message.contains("times the light that falls in")));
+    /// ```
     pub fn doubt_energy(&mut self, shading: &Shading) {
         add(&mut self.materials, |material| shading.doubts_of_energy(material).into_iter().collect());
     }
 
     /// Adds every diagnostic that needs no bake: those of [`Sources::refuse`] and [`Sources::doubt_energy`], more tables than a texture holds, tables
     /// that will miss their aim, and grains of surfaces that no place shows.
+    ///
+    /// ```
+    /// use luthier::{Files, Shading, Sources, TomlFile};
+    /// # let text = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.3\n";
+    /// # let file = TomlFile { path: "coat.toml".into(), bytes: text.as_bytes().to_vec() };
+    ///
+    /// let mut sources = Sources::of(Files::of(vec![file]));
+    /// sources.check(&Shading::default());
+    /// assert!(sources.is_usable());
+    /// for diagnostic in sources.diagnostics() {
+    ///     eprintln!("{diagnostic}");
+    /// }
+    /// ```
     pub fn check(&mut self, shading: &Shading) {
         self.refuse(shading);
         self.doubt_energy(shading);
@@ -113,16 +156,51 @@ impl Sources {
     }
 
     /// The materials of usable files, with the choices of `shading`.
+    ///
+    /// ```
+    /// use luthier::{Files, Shading, ShadingModel, Sources, TomlFile};
+    /// # let text = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.3\n";
+    /// # let file = TomlFile { path: "coat.toml".into(), bytes: text.as_bytes().to_vec() };
+    ///
+    /// let sources = Sources::of(Files::of(vec![file]));
+    /// let shading = Shading { model: Some(ShadingModel::Elek), ..Shading::default() };
+    /// assert_eq!(sources.materials(&shading)[0].model(), ShadingModel::Elek);
+    /// ```
     pub fn materials(&self, shading: &Shading) -> Vec<Material> {
         shading.shaded(self.materials.iter().filter_map(|source| source.material().cloned()).collect())
     }
 
     /// The usable surfaces, as entries of a manifest.
+    ///
+    /// ```
+    /// use luthier::{Files, Sources};
+    /// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+    /// # let folder = tempfile::tempdir()?;
+    /// # std::fs::write(folder.path().join("chalk.toml"), chalk)?;
+    /// std::fs::write(folder.path().join("stone.toml"), "surface = 1\nname = \"stone\"\n[cells]\nmaterials = [\"chalk.toml\"]\n")?;
+    ///
+    /// let sources = Sources::of(Files::read(&[folder.path().join("stone.toml")])?);
+    /// assert_eq!(sources.surface_entries()[0].name, "stone");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn surface_entries(&self) -> Vec<SurfaceEntry> {
         self.surfaces.iter().filter_map(SurfaceSource::entry).collect()
     }
 
     /// The files that a bake of these sources reads, each once: their own files, and the files that materials name.
+    ///
+    /// ```
+    /// use luthier::{Files, Sources};
+    /// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+    /// # let folder = tempfile::tempdir()?;
+    /// # std::fs::write(folder.path().join("chalk.toml"), chalk)?;
+    /// std::fs::write(folder.path().join("stone.toml"), "surface = 1\nname = \"stone\"\n[cells]\nmaterials = [\"chalk.toml\"]\n")?;
+    ///
+    /// // The surface names a material: a bake reads both.
+    /// let sources = Sources::of(Files::read(&[folder.path().join("stone.toml")])?);
+    /// assert_eq!(sources.files().len(), 2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn files(&self) -> Vec<PathBuf> {
         let of_scenes = self.scenes.iter().flat_map(|scene| &scene.materials);
         let materials: Vec<&Source> = of_scenes.chain(&self.materials).collect();

@@ -8,6 +8,15 @@ use crate::Shading;
 use crate::refusals::{of_pictures, of_set, too_many};
 
 /// Adds `doubts`, and makes files unusable that cannot be baked. Files are checked one by one, then, if all are usable, as a set.
+///
+/// ```
+/// use luthier::{Source, refusals};
+/// # let chalk = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+///
+/// let mut sources = ["chalk.toml", "copy.toml"].map(|path| Source::of_text(path.as_ref(), chalk.to_owned()));
+/// luthier::refuse(&mut sources, |material| refusals::of_domain(material, None));
+/// assert!(sources[1].material().is_none(), "two materials of one name");
+/// ```
 pub fn refuse(sources: &mut [Source], doubts: impl Fn(&Material) -> Vec<Diagnostic> + Sync) {
     add(sources, |material| [doubts(material), of_pictures(material)].concat());
     let Some(materials) = usable(sources) else { return };

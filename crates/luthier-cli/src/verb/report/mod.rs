@@ -256,7 +256,7 @@ fn device(_: &Folder, options: &ReportOptions) -> Outcome<Option<Runner>> {
         return Ok(None);
     }
     let text = "this luthier was built without the feature `gpu` and cannot run shaders; judge the tables alone with --no-device";
-    Err(Failure::Input(anyhow::anyhow!(text)))
+    Err(Failure::device(anyhow::anyhow!(text)))
 }
 
 #[cfg(not(feature = "gpu"))]

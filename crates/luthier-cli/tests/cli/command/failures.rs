@@ -7,6 +7,18 @@ use luthier_workshop::{Program, has_colours, is_installed, on_terminal};
 use super::help::verbs;
 use crate::workshop::Workshop;
 
+/// Verbs that a lean build lacks, and a report on a device, are told as a driver that is not there. `scripts/installed.sh` asks a static program, too.
+#[cfg(not(feature = "gpu"))]
+#[test]
+fn a_lean_build_says_what_it_lacks() {
+    let workshop = Workshop::with(&[("gold.toml", &gold("gold"))]);
+    workshop.run(&["bake", "gold.toml", "--no-fit", "-q"]).exits(0);
+    for verb in ["preview", "compare", "bench", "view"] {
+        workshop.run(&[verb, "gold.toml"]).fails(4, &[verb, "needs a graphics driver"]);
+    }
+    workshop.run(&["report"]).fails(4, &["--no-device"]);
+}
+
 #[test]
 fn failures_of_every_verb_are_json_where_json_is_asked_for() {
     let workshop =

@@ -9,6 +9,7 @@ mod manual;
 mod models;
 #[cfg(unix)]
 mod nightly;
+mod oldest_rust;
 mod pipes;
 mod rooms;
 mod schema;

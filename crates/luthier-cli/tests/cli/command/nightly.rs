@@ -11,7 +11,7 @@ use luthier_workshop::root;
 use crate::workshop::Workshop;
 
 /// Scripts that the steps call.
-const CALLED: [&str; 15] = [
+const CALLED: [&str; 17] = [
     "random-tests.sh",
     "fuzz.sh",
     "run-examples.sh",
@@ -19,6 +19,8 @@ const CALLED: [&str; 15] = [
     "add-kind.sh",
     "add-model.sh",
     "package.sh",
+    "installed.sh",
+    "promises.sh",
     "many.sh",
     "book.sh",
     "other-architecture.sh",
@@ -36,8 +38,21 @@ case $* in view*) echo "--features view"; exit 1 ;; bake*) mkdir -p "$4" && echo
 "#;
 
 /// Every step that runs without its name.
-const ALL: [&str; 13] = [
-    "book", "crash", "engines", "examples", "farm", "fuzz", "gpu", "kind", "packages", "random", "release", "scale",
+const ALL: [&str; 15] = [
+    "book",
+    "crash",
+    "engines",
+    "examples",
+    "farm",
+    "fuzz",
+    "gpu",
+    "installed",
+    "kind",
+    "packages",
+    "promises",
+    "random",
+    "release",
+    "scale",
     "tests",
 ];
 
@@ -169,7 +184,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
     let repository = Repository::passed();
     assert_eq!(repository.check().1, set(&[]));
     let all_but_book = &ALL[1..];
-    let cases: [(&str, &[&str]); 18] = [
+    let cases: [(&str, &[&str]); 19] = [
         ("CHANGELOG.md", &[]),
         ("docs/pages/nightly.md", &[]),
         ("docs/proof.md", &["book"]),
@@ -181,21 +196,36 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         ("scripts/engines/furnace.sh", &["engines"]),
         ("Cargo.lock", all_but_book),
         ("crates/luthier-optics/src/lib.rs", all_but_book),
+        // An example's build script bakes.
+        ("crates/luthier-build/src/lib.rs", &["examples", "installed", "packages", "promises"]),
         // Tests of a crate matter to those who run them.
-        ("crates/luthier-optics/tests/all.rs", &["packages"]),
-        ("crates/luthier-gpu/tests/all.rs", &["gpu", "packages"]),
-        ("crates/luthier-lut/tests/all.rs", &["packages", "random"]),
+        ("crates/luthier-optics/tests/all.rs", &["installed", "packages", "promises"]),
+        ("crates/luthier-gpu/tests/all.rs", &["gpu", "installed", "packages", "promises"]),
+        ("crates/luthier-lut/tests/all.rs", &["installed", "packages", "promises", "random"]),
         // The window is a feature of the command.
-        ("crates/luthier-view/src/lib.rs", &["packages", "release"]),
+        ("crates/luthier-view/src/lib.rs", &["installed", "packages", "promises", "release"]),
         // Meshes are for pictures, and their files for imports, which are a part of the command.
         (
             "crates/luthier-mesh/src/lib.rs",
-            &["crash", "examples", "farm", "fuzz", "gpu", "kind", "packages", "release", "scale", "tests"],
+            &[
+                "crash",
+                "examples",
+                "farm",
+                "fuzz",
+                "gpu",
+                "kind",
+                "installed",
+                "packages",
+                "promises",
+                "release",
+                "scale",
+                "tests",
+            ],
         ),
-        ("crates/luthier-fuzz/corpus/a", &["fuzz", "packages"]),
+        ("crates/luthier-fuzz/corpus/a", &["fuzz", "installed", "packages", "promises"]),
         (
             "crates/luthier-gallery/src/lib.rs",
-            &["crash", "examples", "farm", "gpu", "kind", "packages", "release", "scale"],
+            &["crash", "examples", "farm", "gpu", "kind", "installed", "packages", "promises", "release", "scale"],
         ),
     ];
     for (file, expected) in cases {
