@@ -29,10 +29,11 @@ pub(super) fn write(options: &GalleryOptions, output: &Path) -> Outcome {
     let (titles, sources) = sources(options)?;
     // A grid would repeat the warnings of its one file many times.
     let materials = bakeable(sources, &options.shading.in_forms(&[]), !sheet.grid.is_empty())?;
-    let package = Bake::lit().package(&lit(&materials), store()?)?;
     let look = &sheet.look;
     let settings = settings(look, sheet.shape, sheet.mesh.as_deref(), sheet.size)?;
+    // Before the bake, which is for nothing where no driver is there.
     let gpu = open(look.adapter.as_deref())?;
+    let package = Bake::lit().package(&lit(&materials), store()?)?;
     let scene = gpu.scene(&package, Form::Baked)?;
     let mut pictures = Vec::with_capacity(materials.len());
     for (i, material) in materials.iter().enumerate() {

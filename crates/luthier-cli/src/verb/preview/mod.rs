@@ -24,8 +24,12 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         return simulate(options, samples, format);
     }
     let shape = options.shape.unwrap_or(ShapeName::Model);
+    let named = named(options, shape)?;
+    let look = &options.look;
+    // Before the bake, which is for nothing where no driver is there.
+    let gpu = open(look.adapter.as_deref())?;
     let mut own = None;
-    let (package, parts) = match named(options, shape)? {
+    let (package, parts) = match named {
         Some(file) if is_scene(file) => {
             let (package, parts, mesh) = scene::read(Path::new(file), &options.shading)?;
             own = Some(mesh);
@@ -37,7 +41,6 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         }
         None => (Bake::lit().package(&lit(&grid::materials()?), store()?)?, all_of_grid()),
     };
-    let look = &options.look;
     let closed = if own.is_some() { ShapeName::Sphere } else { shape };
     let mut settings = settings(look, closed, options.mesh.as_deref(), options.size)?;
     if own.is_some() {
@@ -48,7 +51,6 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         }
         settings.mesh = own;
     }
-    let gpu = open(look.adapter.as_deref())?;
     let scene = gpu.scene(&package, Form::Baked)?;
     for material in scene.materials_of(&parts)? {
         // Blurred maps need tables of albedos, which a bake on disk may lack, and ignore maps of single layers.

@@ -216,7 +216,12 @@ fn device(folder: &Folder, options: &ReportOptions) -> Outcome<Option<Runner>> {
         return Ok(None);
     }
     let package = folder.package()?;
-    let gpu = open(options.adapter.as_deref())?;
+    let gpu = open(options.adapter.as_deref()).map_err(|failure| match failure {
+        Failure::Device(error) => {
+            Failure::Device(anyhow::anyhow!("{error}; --no-device judges the tables without a driver"))
+        }
+        other => other,
+    })?;
     Ok(Some(Shaders::new(&gpu, &package)?))
 }
 
