@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use luthier::{Bake, Source, find, lit, read_materials};
+use luthier_gpu::Shown;
 use luthier_manifest::Form;
 use luthier_terminal::{Failure, Outcome, open};
 
 use crate::cli::{GalleryOptions, ShapeName};
 use crate::materials::bakeable;
-use crate::picture::{Format, settings};
+use crate::picture::{Format, render, settings};
 use crate::store::store;
 use crate::variations::variations;
 use crate::verb::compare::ENVIRONMENT_SAMPLES;
@@ -43,7 +44,7 @@ pub(super) fn write(options: &GalleryOptions, output: &Path) -> Outcome {
         if look.environment_samples.is_none() && (!scene.has_albedo(number)? || scene.has_layer_maps(number)?) {
             settings.environment_samples = ENVIRONMENT_SAMPLES;
         }
-        pictures.push((title.clone(), scene.render(&[number], &settings)?));
+        pictures.push((title.clone(), render(&scene, &[Shown::Material(number)], &settings, title)?));
     }
     let columns = sheet.columns.unwrap_or_else(|| (pictures.len() as f64).sqrt().ceil() as u32);
     format.write(output, luthier_report::sheet(&pictures, columns), look.tone.into())

@@ -5,14 +5,14 @@ mod scene;
 use std::path::Path;
 
 use luthier::{Bake, lit};
-use luthier_gpu::{RenderSettings, Scene, Shape, Shown};
+use luthier_gpu::{RenderSettings, Shape, Shown};
 use luthier_lut::Image;
 use luthier_manifest::Form;
-use luthier_terminal::{Bar, Failure, Outcome, open};
+use luthier_terminal::{Failure, Outcome, open};
 
 use crate::cli::{PreviewOptions, ShapeName};
 use crate::meshes::scene_file::is_scene;
-use crate::picture::{Format, settings};
+use crate::picture::{Format, render, settings};
 use crate::store::store;
 use crate::verb::compare::ENVIRONMENT_SAMPLES;
 use crate::{grid, memory_bake, simulated};
@@ -64,16 +64,6 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         write(options, format, render(&scene, &parts, &draft, "first picture")?)?;
     }
     write(options, format, render(&scene, &parts, &settings, "rendering")?)
-}
-
-/// Renders, and shows progress.
-fn render(scene: &Scene, parts: &[Shown], settings: &RenderSettings, what: &str) -> Outcome<Image> {
-    let bar = Bar::new(what);
-    let image = scene.render_watched(parts, settings, &|done, count| {
-        bar.set(done as u64, count as u64);
-        true
-    });
-    Ok(image?.expect("nobody stops it"))
 }
 
 fn write(options: &PreviewOptions, format: Format, image: Image) -> Outcome {
