@@ -18,7 +18,7 @@ use luthier_report::{
     Asked, Device, Exhibits, FileBudget, FilmMap, FilmSource, Report, Settings, Subject, SurfaceMap, judge, limits,
 };
 use luthier_scene::{LeaveOut, simplified};
-use luthier_terminal::{Bar, Failure, Outcome, print};
+use luthier_terminal::{Bar, Failure, Outcome, counted, print};
 
 use crate::cli::ReportOptions;
 use crate::interrupt::whole;
@@ -276,8 +276,8 @@ fn pictures(
 
 fn text(report: &Report, folder: &Path) -> String {
     let mut out = format!(
-        "{} materials judged{}\n",
-        report.materials.len(),
+        "{} judged{}\n",
+        counted(report.materials.len(), "material"),
         report.device.as_ref().map_or_else(|| ", tables only".to_owned(), |name| format!(" on {name}")),
     );
     out.push_str(&format!("largest relative error: {:.2e}\n", report.max_error()));
