@@ -41,7 +41,7 @@ impl Template {
     /// Real substances, in the order of their names.
     pub const PRESETS: &[Self] = templates!("presets":
         "aluminium" "anodised-titanium" "brass" "chromium" "copper" "crown-glass" "fused-silica" "gold" "ice" "iron" "nickel" "platinum"
-        "silicon" "silver" "soap-film" "stainless-steel" "titanium" "tungsten" "water" "zinc");
+        "silicon" "silver" "soap-film" "stainless-steel" "titanium" "tungsten" "water");
 
     /// The description that the file has of itself.
     pub fn description(&self) -> &'static str {
