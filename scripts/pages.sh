@@ -20,8 +20,8 @@ trap 'rm -rf "$work"' EXIT
 stacks=(materials/papers materials/{anodised-titanium,brushed-aluminium,polished-gold,soap-film,varnished-brass}.toml)
 
 materials() {
-  luthier gallery materials/{red-lacquer,anodised-titanium,car-paint,house-paint,soap-film,gold-paint,brushed-aluminium,varnished-brass}.toml \
-    -o docs/images/materials.png --size 232 --columns 4
+  luthier gallery materials/textured/board/{varnished-oak,worn-brass}.toml materials/soap-film.toml materials/textured/board/{celadon-tile,anodised-plate,scratched-car-paint}.toml \
+    materials/{anodised-titanium,brushed-aluminium}.toml --sky softbox-studio --background --size 390 --columns 4 --samples 3 -o docs/images/materials.png
   # The example of the README, as it stands there.
   awk '/^```toml$/ { on = 1; next } /^```$/ { on = 0 } on' README.md >"$work/enamel.toml"
   luthier preview "$work/enamel.toml" -o docs/images/enamel.png --size 192

@@ -49,6 +49,7 @@ fn main() -> ExitCode {
         Verb::Bake(options) => verb::bake::run(options),
         Verb::Merge(options) => verb::bake::merge(options),
         Verb::Cache(verb) => verb::cache::run(verb),
+        Verb::New(options) => verb::new::run(options),
         Verb::Check(options) => verb::check::run(options),
         Verb::Report(options) => verb::report::run(options),
         Verb::Audit(options) => verb::audit::run(options),

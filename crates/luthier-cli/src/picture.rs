@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use luthier_gpu::{Backdrop, Light, RenderSettings, Shape, ToneMapping};
+use luthier_gpu::{Backdrop, Light, RenderSettings, Scene, Shape, Shown, ToneMapping};
 use luthier_lut::Image;
-use luthier_terminal::{Failure, Outcome, files};
+use luthier_terminal::{Bar, Failure, Outcome, files};
 use luthier_texture::{Metadata, exr, png};
 
 use crate::cli::{Look, ShapeName};
@@ -55,6 +55,16 @@ pub(crate) fn settings(look: &Look, shape: ShapeName, mesh: Option<&Path>, size:
         settings.lights.extend(default);
     }
     Ok(settings)
+}
+
+/// Renders, and shows progress. Passes are short, so that none outlasts the patience with a busy software adapter.
+pub(crate) fn render(scene: &Scene, parts: &[Shown], settings: &RenderSettings, what: &str) -> Outcome<Image> {
+    let bar = Bar::new(what);
+    let image = scene.render_watched(parts, settings, &|done, count| {
+        bar.set(done as u64, count as u64);
+        true
+    });
+    Ok(image?.expect("nobody stops it"))
 }
 
 /// File format of a picture.

@@ -23,8 +23,9 @@ pub enum GpuError {
     },
     /// No adapter can run compute shaders.
     #[error(
-        "no graphics adapter found that can run compute shaders; without a GPU, install the software Vulkan driver \
-         (Debian and Ubuntu: apt-get install mesa-vulkan-drivers libvulkan1)"
+        "no graphics driver found that runs compute shaders; a software one is enough: apt-get install mesa-vulkan-drivers libvulkan1 \
+         (Debian, Ubuntu), dnf install mesa-vulkan-drivers vulkan-loader (Fedora), pacman -S vulkan-swrast (Arch), \
+         apk add mesa-vulkan-swrast vulkan-loader (Alpine)"
     )]
     NoAdapter,
     /// Adapters, but none of that name.

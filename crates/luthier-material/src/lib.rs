@@ -20,6 +20,7 @@
 //! - `left_out`, `default_model`, `doubt`, `cross_section`, `rewrite`: what follows from a material.
 //! - `grammar`: keys, kinds and bounds as data; `schema` and `reference` put them into words.
 //! - `correct`, `check`, `decode`, `parse`: from a text to a material; `scene` and `surface` to those of other files.
+//! - `template`: files to begin with.
 
 mod bake_settings;
 mod check;
@@ -44,6 +45,7 @@ mod schema;
 mod section;
 mod suggest;
 mod surface;
+mod template;
 
 pub use bake_settings::{
     AlphaMapping, BakeSettings, Beams, DEFAULT_WAVELENGTHS_NM, DistributionMapping, DistributionSettings,
@@ -67,3 +69,4 @@ pub use scene::{Light, Scene, SceneMaterial, SceneTarget, View, parse_scene};
 pub use schema::{scene_schema, schema, surface_schema};
 pub use suggest::did_you_mean;
 pub use surface::{NamedMaterial, Surface, SurfaceCells, SurfaceGlitter, SurfaceSwitch, parse_surface};
+pub use template::Template;

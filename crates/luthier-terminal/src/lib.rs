@@ -33,5 +33,7 @@ pub use device::{Shaders, adapter_json, adapter_label, open, surface_maps, witho
 pub use failure::{Broken, Failure, Outcome, diagnostic, files};
 pub use materials::{print_diagnostics, valid};
 pub use options::{Sources, named};
-pub use output::{STDOUT, bytes, complain, deliver, has_colour, has_cursor, has_events, print, print_bytes, tell};
+pub use output::{
+    STDOUT, bytes, complain, counted, deliver, has_colour, has_cursor, has_events, print, print_bytes, tell,
+};
 pub use progress::Bar;

@@ -97,6 +97,11 @@ pub fn has_colour() -> bool {
     has_cursor() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }
 
+/// A number of things, by their name in the singular: `1 table`, `2 tables`.
+pub fn counted(count: usize, name: &str) -> String {
+    if count == 1 { format!("1 {name}") } else { format!("{count} {name}s") }
+}
+
 /// Bytes for people.
 pub fn bytes(count: u64) -> String {
     match count {

@@ -36,6 +36,7 @@ impl Verb {
             #[cfg(feature = "view")]
             Self::View(options) => options.screenshot.as_deref().map_or(Ok(()), |path| file("--screenshot", path)),
             Self::Shader(options) => text("--output", options.output.as_deref()),
+            Self::New(options) => text("--output", options.output.as_deref()),
             Self::Environment(options) => folder("--out", &options.out),
             Self::Import(options) => folder("--output", &options.output),
             Self::Fit(options) => text("--output", options.output.as_deref()),

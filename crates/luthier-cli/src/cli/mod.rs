@@ -68,6 +68,8 @@ pub(crate) enum Verb {
         after_help = "Examples:\n  luthier cache stats\n  luthier cache verify --cache /shared/luthier\n  luthier cache clear"
     )]
     Cache(CacheVerb),
+    /// Write a material file to begin with: of a class of surfaces, or of a real substance
+    New(NewOptions),
     /// Validate materials, surfaces and scenes as `bake` would, without baking, and print the class of each surface
     Check(CheckOptions),
     /// Judge a bake: tables and shaders against the full evaluation in f64
@@ -442,6 +444,9 @@ pub(crate) use gallery::GalleryOptions;
 
 mod import;
 pub(crate) use import::ImportOptions;
+
+mod new;
+pub(crate) use new::NewOptions;
 
 mod audit;
 mod destinations;

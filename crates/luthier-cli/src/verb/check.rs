@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use luthier::{Files, SceneSource, Source, Sources, SurfaceSource};
 use luthier_manifest::ShadingModel;
 use luthier_material::{Diagnostic, Severity, Surface};
-use luthier_terminal::{Failure, Outcome, diagnostic, print, print_diagnostics};
+use luthier_terminal::{Failure, Outcome, counted, diagnostic, print, print_diagnostics};
 use serde_json::{Value, json};
 
 use crate::cli::CheckOptions;
@@ -74,7 +74,7 @@ impl Set {
 
 fn count(diagnostics: &[Diagnostic], severity: Severity) -> String {
     let n: usize = diagnostics.iter().filter(|d| d.severity == severity).map(|d| d.count).sum();
-    format!("{n} {}{}", severity.name(), if n == 1 { "" } else { "s" })
+    counted(n, severity.name())
 }
 
 /// The number of warnings, for the end of a line.
@@ -106,7 +106,7 @@ fn scene_line(scene: &SceneSource) -> String {
         Ok(parsed) => {
             let broken = scene.materials.iter().filter(|source| source.parsed.is_err()).count();
             let verdict = if broken == 0 { "ok".to_owned() } else { format!("{broken} broken") };
-            format!("{}: {verdict}, scene of {} materials\n", scene.label, parsed.materials.len())
+            format!("{}: {verdict}, scene of {}\n", scene.label, counted(parsed.materials.len(), "material"))
         }
     }
 }
@@ -121,10 +121,7 @@ fn surface_line(surface: &SurfaceSource) -> String {
 /// The materials of a surface, each once.
 fn listed(surface: &Surface) -> String {
     let named: BTreeSet<&str> = surface.materials().map(|material| material.file.as_str()).collect();
-    match named.len() {
-        1 => "1 material".to_owned(),
-        count => format!("{count} materials"),
-    }
+    counted(named.len(), "material")
 }
 
 fn surface_entry(surface: &SurfaceSource) -> Value {

@@ -22,12 +22,13 @@ pub(crate) fn run(options: &CompareOptions) -> Outcome {
     if options.shape == ShapeName::Grid {
         return Err(Failure::Input(anyhow::anyhow!("a comparison is of one material; the grid has 25 of its own")));
     }
+    let look = &options.look;
+    // Before the bake, which is for nothing where no driver is there.
+    let gpu = open(look.adapter.as_deref())?;
     let [a, b] = [&options.a, &options.b].map(|side| Subject::of(options, side));
     let (a, b) = (a?, b?);
-    let look = &options.look;
     let mut settings = settings(look, options.shape, options.mesh.as_deref(), options.size)?;
     settings.environment_samples = look.environment_samples.unwrap_or(ENVIRONMENT_SAMPLES);
-    let gpu = open(look.adapter.as_deref())?;
     let Picture { image: a, noise: noise_a } = a.render(&gpu, &settings)?;
     let Picture { image: b, noise: noise_b } = b.render(&gpu, &settings)?;
     let noise = libm::hypot(noise_a, noise_b);

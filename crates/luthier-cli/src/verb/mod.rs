@@ -23,6 +23,7 @@ pub(crate) mod import;
 pub(crate) mod ior;
 pub(crate) mod man;
 pub(crate) mod models;
+pub(crate) mod new;
 #[cfg(feature = "gpu")]
 pub(crate) mod preview;
 pub(crate) mod report;

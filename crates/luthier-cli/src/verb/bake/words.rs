@@ -2,14 +2,15 @@
 
 use luthier_export::MANIFEST;
 use luthier_manifest::{CandidateForm, LobesError, Manifest};
-use luthier_terminal::bytes;
+use luthier_terminal::{bytes, counted};
 use serde_json::{Value, json};
 
 use crate::cli::BakeOptions;
 use crate::progress::BakeProgress;
 
 pub(super) fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress) -> String {
-    let mut out = format!("{} materials, {} tables\n\n", manifest.materials.len(), manifest.tables.len());
+    let mut out =
+        format!("{}, {}\n\n", counted(manifest.materials.len(), "material"), counted(manifest.tables.len(), "table"));
     out.push_str(&format!(
         "{:<13} {:>6}  {:>11}  {:<11} {:>10}  {:>9}\n",
         "table", "tiles", "texels", "format", "size", "max error"

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use luthier::{Bake, Source, find, lit, read_materials};
+use luthier_gpu::Shown;
 use luthier_manifest::Form;
 use luthier_terminal::{Failure, Outcome, open};
 
 use crate::cli::{GalleryOptions, ShapeName};
 use crate::materials::bakeable;
-use crate::picture::{Format, settings};
+use crate::picture::{Format, render, settings};
 use crate::store::store;
 use crate::variations::variations;
 use crate::verb::compare::ENVIRONMENT_SAMPLES;
@@ -29,10 +30,11 @@ pub(super) fn write(options: &GalleryOptions, output: &Path) -> Outcome {
     let (titles, sources) = sources(options)?;
     // A grid would repeat the warnings of its one file many times.
     let materials = bakeable(sources, &options.shading.in_forms(&[]), !sheet.grid.is_empty())?;
-    let package = Bake::lit().package(&lit(&materials), store()?)?;
     let look = &sheet.look;
     let settings = settings(look, sheet.shape, sheet.mesh.as_deref(), sheet.size)?;
+    // Before the bake, which is for nothing where no driver is there.
     let gpu = open(look.adapter.as_deref())?;
+    let package = Bake::lit().package(&lit(&materials), store()?)?;
     let scene = gpu.scene(&package, Form::Baked)?;
     let mut pictures = Vec::with_capacity(materials.len());
     for (i, material) in materials.iter().enumerate() {
@@ -42,7 +44,7 @@ pub(super) fn write(options: &GalleryOptions, output: &Path) -> Outcome {
         if look.environment_samples.is_none() && (!scene.has_albedo(number)? || scene.has_layer_maps(number)?) {
             settings.environment_samples = ENVIRONMENT_SAMPLES;
         }
-        pictures.push((title.clone(), scene.render(&[number], &settings)?));
+        pictures.push((title.clone(), render(&scene, &[Shown::Material(number)], &settings, title)?));
     }
     let columns = sheet.columns.unwrap_or_else(|| (pictures.len() as f64).sqrt().ceil() as u32);
     format.write(output, luthier_report::sheet(&pictures, columns), look.tone.into())

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use luthier_export::{input, label};
 use luthier_import::{Fate, Import, ImportError, Imported, Line, import};
-use luthier_terminal::{Failure, Outcome, deliver, files, print};
+use luthier_terminal::{Failure, Outcome, counted, deliver, files, print};
 use serde_json::{Value, json};
 
 use crate::cli::ImportOptions;
@@ -148,7 +148,7 @@ fn text(options: &ImportOptions, read: &[Read]) -> String {
         text
     };
     for Read { label, import } in read {
-        let _ = writeln!(out, "{label}: {} materials", import.materials.len());
+        let _ = writeln!(out, "{label}: {}", counted(import.materials.len(), "material"));
         out.push_str(&say(&import.lines));
         for Imported { name, source_name, lines, .. } in &import.materials {
             let source = if source_name.is_empty() { String::new() } else { format!(" (`{source_name}`)") };

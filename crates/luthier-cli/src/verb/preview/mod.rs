@@ -5,14 +5,14 @@ mod scene;
 use std::path::Path;
 
 use luthier::{Bake, lit};
-use luthier_gpu::{RenderSettings, Scene, Shape, Shown};
+use luthier_gpu::{RenderSettings, Shape, Shown};
 use luthier_lut::Image;
 use luthier_manifest::Form;
-use luthier_terminal::{Bar, Failure, Outcome, open};
+use luthier_terminal::{Failure, Outcome, open};
 
 use crate::cli::{PreviewOptions, ShapeName};
 use crate::meshes::scene_file::is_scene;
-use crate::picture::{Format, settings};
+use crate::picture::{Format, render, settings};
 use crate::store::store;
 use crate::verb::compare::ENVIRONMENT_SAMPLES;
 use crate::{grid, memory_bake, simulated};
@@ -24,8 +24,12 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         return simulate(options, samples, format);
     }
     let shape = options.shape.unwrap_or(ShapeName::Model);
+    let named = named(options, shape)?;
+    let look = &options.look;
+    // Before the bake, which is for nothing where no driver is there.
+    let gpu = open(look.adapter.as_deref())?;
     let mut own = None;
-    let (package, parts) = match named(options, shape)? {
+    let (package, parts) = match named {
         Some(file) if is_scene(file) => {
             let (package, parts, mesh) = scene::read(Path::new(file), &options.shading)?;
             own = Some(mesh);
@@ -37,7 +41,6 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         }
         None => (Bake::lit().package(&lit(&grid::materials()?), store()?)?, all_of_grid()),
     };
-    let look = &options.look;
     let closed = if own.is_some() { ShapeName::Sphere } else { shape };
     let mut settings = settings(look, closed, options.mesh.as_deref(), options.size)?;
     if own.is_some() {
@@ -48,7 +51,6 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         }
         settings.mesh = own;
     }
-    let gpu = open(look.adapter.as_deref())?;
     let scene = gpu.scene(&package, Form::Baked)?;
     for material in scene.materials_of(&parts)? {
         // Blurred maps need tables of albedos, which a bake on disk may lack, and ignore maps of single layers.
@@ -62,16 +64,6 @@ pub(crate) fn run(options: &PreviewOptions) -> Outcome {
         write(options, format, render(&scene, &parts, &draft, "first picture")?)?;
     }
     write(options, format, render(&scene, &parts, &settings, "rendering")?)
-}
-
-/// Renders, and shows progress.
-fn render(scene: &Scene, parts: &[Shown], settings: &RenderSettings, what: &str) -> Outcome<Image> {
-    let bar = Bar::new(what);
-    let image = scene.render_watched(parts, settings, &|done, count| {
-        bar.set(done as u64, count as u64);
-        true
-    });
-    Ok(image?.expect("nobody stops it"))
 }
 
 fn write(options: &PreviewOptions, format: Format, image: Image) -> Outcome {

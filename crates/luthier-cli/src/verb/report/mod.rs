@@ -18,7 +18,7 @@ use luthier_report::{
     Asked, Device, Exhibits, FileBudget, FilmMap, FilmSource, Report, Settings, Subject, SurfaceMap, judge, limits,
 };
 use luthier_scene::{LeaveOut, simplified};
-use luthier_terminal::{Bar, Failure, Outcome, print};
+use luthier_terminal::{Bar, Failure, Outcome, counted, print};
 
 use crate::cli::ReportOptions;
 use crate::interrupt::whole;
@@ -216,7 +216,12 @@ fn device(folder: &Folder, options: &ReportOptions) -> Outcome<Option<Runner>> {
         return Ok(None);
     }
     let package = folder.package()?;
-    let gpu = open(options.adapter.as_deref())?;
+    let gpu = open(options.adapter.as_deref()).map_err(|failure| match failure {
+        Failure::Device(error) => {
+            Failure::Device(anyhow::anyhow!("{error}; --no-device judges the tables without a driver"))
+        }
+        other => other,
+    })?;
     Ok(Some(Shaders::new(&gpu, &package)?))
 }
 
@@ -271,8 +276,8 @@ fn pictures(
 
 fn text(report: &Report, folder: &Path) -> String {
     let mut out = format!(
-        "{} materials judged{}\n",
-        report.materials.len(),
+        "{} judged{}\n",
+        counted(report.materials.len(), "material"),
         report.device.as_ref().map_or_else(|| ", tables only".to_owned(), |name| format!(" on {name}")),
     );
     out.push_str(&format!("largest relative error: {:.2e}\n", report.max_error()));

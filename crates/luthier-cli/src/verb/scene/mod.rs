@@ -7,7 +7,7 @@ use luthier_export::{MANIFEST, label};
 use luthier_manifest::{LayerKind, MaterialChoice, SceneChoice};
 use luthier_material::{Material, Scene};
 use luthier_scene::{DeviceCost, Director, Made, SceneFailure, cost_text, label as candidate_label};
-use luthier_terminal::{Broken, Failure, Outcome, bytes, print, print_diagnostics, valid};
+use luthier_terminal::{Broken, Failure, Outcome, bytes, counted, print, print_diagnostics, valid};
 use serde_json::{Value, json};
 
 use crate::cli::BakeOptions;
@@ -147,8 +147,8 @@ fn text(options: &BakeOptions, made: &Made, device: &DeviceCost) -> String {
         share => format!(" where a share of {share} of neighbours differs"),
     };
     let mut out = format!(
-        "{scene}: {} materials, form {form}, {} of tables, {} in all{differ}\ncosts: {}\n\n",
-        materials.len(),
+        "{scene}: {}, form {form}, {} of tables, {} in all{differ}\ncosts: {}\n\n",
+        counted(materials.len(), "material"),
         bytes(made.bytes()),
         cost_text(made.cost(), device.unit),
         device.label(),

@@ -91,6 +91,22 @@ fn toml_of_pages_passes_check() {
     assert!(count > 25, "{count} samples");
 }
 
+/// The README says how many bytes its example has.
+#[test]
+fn the_readme_counts_its_bake() {
+    let pages = pages();
+    let page = pages.iter().find(|page| page.name == "README.md").unwrap();
+    let blocks = page.blocks();
+    let example = blocks.iter().find(|block| block.language == "toml").unwrap();
+    let workshop = Workshop::with(&[("enamel.toml", &example.text)]);
+    let made = workshop.run(&["bake", "enamel.toml", "--out", "luts", "--no-zstd", "--json"]).exits(0).json();
+    let tables = made["tables"].as_array().unwrap();
+    let [table] = tables.as_slice() else { panic!("{tables:?}") };
+    let bytes = table["texel_bytes"].as_u64().unwrap();
+    let said = format!("one texture of {},{:03} bytes", bytes / 1000, bytes % 1000);
+    assert!(page.text.contains(&said), "README.md does not say: {said}");
+}
+
 /// Recipes are shown as they stand: each has a picture of its name, which `luthier preview` still makes.
 #[test]
 fn recipes_look_as_pictured_and_have_no_warnings() {

@@ -84,6 +84,7 @@ fn files_and_folders_are_told_apart() {
         &["table", "dfg", "--preset", "bevy", "-o", "folder"][..],
         &["table", "dfg", "--preset", "bevy", "-o", "x.ktx2", "--report", "folder"],
         &["shader", "m.toml", "-o", "folder"],
+        &["new", "x", "-o", "folder"],
         &["gallery", "m.toml", "--html", "folder"],
         &["bake", "m.toml", "--depfile", "folder"],
     ] {

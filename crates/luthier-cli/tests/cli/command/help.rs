@@ -8,6 +8,7 @@ pub(crate) fn verbs() -> impl Iterator<Item = &'static str> {
         "bake",
         "merge",
         "cache",
+        "new",
         "check",
         "report",
         "gallery",

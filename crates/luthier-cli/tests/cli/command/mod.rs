@@ -7,6 +7,7 @@ mod help;
 mod kinds;
 mod manual;
 mod models;
+mod new;
 #[cfg(unix)]
 mod nightly;
 mod oldest_rust;

@@ -2,6 +2,8 @@
 
 #[cfg(feature = "gpu")]
 mod compare;
+#[cfg(all(feature = "gpu", target_os = "linux"))]
+mod driver;
 mod environment;
 #[cfg(feature = "gpu")]
 mod gallery;
