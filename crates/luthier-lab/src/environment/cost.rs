@@ -2,7 +2,7 @@
 
 use luthier::{MemoryStore, Options, outline};
 use luthier_cost::{DeviceCost, Style, shader_text};
-use luthier_manifest::ShadingModel;
+use luthier_manifest::{FunctionGroup, ShadingModel};
 use luthier_material::Material;
 use luthier_shader::{Form, MaterialSet, count};
 use luthier_terminal::{Failure, Outcome};
@@ -34,7 +34,9 @@ impl Costs {
     pub(super) fn of(material: &Material) -> Outcome<Self> {
         let device =
             DeviceCost::shipped(DEVICE).ok_or_else(|| Failure::Usage(anyhow::anyhow!("no costs of {DEVICE}")))?;
-        let cost = |model, functions, turn| cost(&device, material, model, functions, turn);
+        // Fits are made once.
+        let store = MemoryStore::default();
+        let cost = |model, functions, turn| cost(&device, &store, material, model, functions, turn);
         let steps = STEPS.map(|step| {
             let [turned, still] = ["wi.x", "0.0"].map(|turn| cost(ShadingModel::Lobes, step, Some(turn)));
             Ok([turned?, still?])
@@ -51,14 +53,15 @@ impl Costs {
 /// The cost of a look-up with a turn, or of an evaluation.
 fn cost(
     device: &DeviceCost,
+    store: &MemoryStore,
     material: &Material,
     model: ShadingModel,
-    functions: luthier_manifest::FunctionGroup,
+    functions: FunctionGroup,
     turn: Option<&str>,
 ) -> Outcome<f64> {
     let mut material = material.clone();
     material.shade_by(model);
-    let outlined = outline(std::slice::from_ref(&material), &Options::default(), &MemoryStore::default())?;
+    let outlined = outline(std::slice::from_ref(&material), &Options::default(), store)?;
     let mut set = MaterialSet::from_manifest(&outlined);
     set.functions = [functions].into_iter().collect();
     let style = Style { form: Form::Baked, constant: false, approximate: false };

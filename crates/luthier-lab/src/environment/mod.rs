@@ -5,6 +5,7 @@ mod page;
 mod pictures;
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use luthier::{Bake, MemoryStore, lit, read_materials};
 use luthier_environment::{Environment, Scenery};
@@ -14,6 +15,7 @@ use luthier_material::{BakeSettings, Material};
 use luthier_optics::stack::{Base, Layer};
 use luthier_report::ModelSubject;
 use luthier_terminal::{Bar, Failure, Outcome, deliver, open, valid};
+use rayon::prelude::*;
 
 use self::cost::Costs;
 use self::page::Page;
@@ -74,11 +76,13 @@ pub(crate) fn run(options: &EnvironmentOptions) -> Outcome {
         random.map(|(name, stack, bake)| (name, crate::lobes::material("stack".to_owned(), stack, bake), false));
     let given = materials.iter().map(|material| (material.name.clone(), material.clone(), true));
     let all: Vec<(String, Material, bool)> = given.chain(random).collect();
-    let (bar, mut rows) = (Bar::new("materials"), Vec::new());
-    for (i, (name, material, is_given)) in all.iter().enumerate() {
-        rows.extend(measure(&gpu, (name, material, *is_given), &points, &skies, &texels)?);
-        bar.set(i as u64 + 1, all.len() as u64);
-    }
+    let (bar, done) = (Bar::new("materials"), AtomicU64::new(0));
+    let rows = all.par_iter().map(|(name, material, is_given)| {
+        let rows = measure(&gpu, (name, material, *is_given), &points, &skies, &texels);
+        bar.set(done.fetch_add(1, Ordering::Relaxed) + 1, all.len() as u64);
+        rows
+    });
+    let rows = rows.collect::<Outcome<Vec<Vec<Row>>>>()?.into_iter().flatten().collect();
     drop(bar);
     let costs = materials.iter().map(Costs::of).collect::<Outcome<_>>()?;
     let bytes = cost::bytes(skies[0].level_size());
