@@ -122,8 +122,8 @@ fn in_a_white_furnace_lobes_show_their_albedo() {
     }
 }
 
-/// Without a first interface, whose energy is given by hand. Eight directions of a lobe: with one sample of a pixel .070 of the mean was measured; 16 samples
-/// turn narrower blurs and are nearer.
+/// Without a first interface, whose energy is given by hand. With one sample of a pixel .070 of the mean was measured, and .057 in axes; with 16, which turn narrower
+/// blurs, .028 and .035.
 #[test]
 fn lobes_show_the_environment_that_a_brute_force_finds() {
     FRAMES.into_iter().for_each(compare);
@@ -137,7 +137,7 @@ fn compare(axes: Option<Axes>) {
         scene.render(&[0], &settings).unwrap()
     };
     let sampled = render(1, 512);
-    for (samples, limit) in [(1, 0.1), (4, 0.04)] {
+    for (samples, limit) in [(1, 0.08), (4, 0.04)] {
         let error = apart(&render(samples, 0), &sampled);
         eprintln!("blurred environment in lobes, {axes:?}, {samples}: rms {error:.4} of the mean");
         assert!(error < limit, "{axes:?}, {samples}: {error}");

@@ -144,9 +144,9 @@ const READS: &str = "
 For each number of reads: with 16 samples of a pixel, then with one.
 
 Parts of the difference of eight reads were looked at one by one in f64 on the host, with 256 places up to 80 degrees. The remainder has under .005 of it in all nine pairs. Of frosted-acrylic under
-night-street .056 of .064 are in the first interface beyond 70 degrees, of which a coarse grid has few places: its lobe is up to six times as long as wide there, eight directions leave gaps on it, and narrower blurs show dots.
+night-street .056 of .064 are in the first interface beyond 70 degrees, of which a coarse grid has no places (that of `--size 8` ends at 62 degrees): its lobe is up to six times as long as wide there, eight directions leave gaps on it, and narrower blurs show dots.
 Sums over the map in four times as many rows differ by .009 there, so that texels are not the reason. Of silver-paint the first lobe from below has most: it is half a radian wide, and the horizon cuts it. One sample is off
-there by .1, because an exponential stands for that cut. That grid holds seven of the nine pairs with 16 turns.
+there by .1, because an exponential stands for that cut. Those 256 places hold seven of the nine pairs with 16 turns.
 ";
 
 const MODELS: &str = "
