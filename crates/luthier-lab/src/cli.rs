@@ -417,6 +417,9 @@ pub(crate) struct EnvironmentOptions {
     /// Rows of the maps
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(32..=512))]
     pub(crate) rows: u32,
+    /// Random stacks of two interfaces besides
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) random: u32,
     #[command(flatten)]
     pub(crate) adapter: Adapter,
     #[command(flatten)]

@@ -248,7 +248,7 @@ pub(crate) struct Emission {
     /// Forms of the shaders; by default both
     #[arg(long, value_parser = named::<Form>(Form::NAMES), value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) form: Vec<Form>,
-    /// Groups of functions beside luthier_eval: `light` (two steps for many lights), `sample` (drawn directions), `propose` (a direction for each lobe), `albedo`, `environment` (prefiltered, of materials of lobes; `environment-8` with eight reads a lobe, as -16, -4, -2 and -1, in place of 32), `surface` (normals of a renderer's own)
+    /// Groups of functions beside luthier_eval: `light` (two steps for many lights), `sample` (drawn directions), `propose` (a direction for each lobe), `albedo`, `environment` (prefiltered, of materials of lobes; `environment-4` with four reads a lobe, as -2 and -1, in place of eight), `surface` (normals of a renderer's own)
     #[arg(long, value_parser = named::<FunctionGroup>(FunctionGroup::NAMES), value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) functions: Vec<FunctionGroup>,
 }
@@ -606,7 +606,7 @@ pub(crate) struct ShaderOptions {
     /// Form of the shader: `baked` reads tables, `full` computes all terms
     #[arg(long, value_parser = named::<Form>(Form::NAMES), default_value_t = Form::Baked)]
     pub(crate) form: Form,
-    /// Groups of functions beside luthier_eval: `light` (two steps for many lights), `sample` (drawn directions), `propose` (a direction for each lobe), `albedo`, `environment` (prefiltered, of materials of lobes; `environment-8` with eight reads a lobe, as -16, -4, -2 and -1, in place of 32), `surface` (normals of a renderer's own)
+    /// Groups of functions beside luthier_eval: `light` (two steps for many lights), `sample` (drawn directions), `propose` (a direction for each lobe), `albedo`, `environment` (prefiltered, of materials of lobes; `environment-4` with four reads a lobe, as -2 and -1, in place of eight), `surface` (normals of a renderer's own)
     #[arg(long, value_parser = named::<FunctionGroup>(FunctionGroup::NAMES), value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) functions: Vec<FunctionGroup>,
     /// Layout of rows of lobes, as for `luthier bake`

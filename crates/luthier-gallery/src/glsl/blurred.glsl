@@ -182,6 +182,7 @@ vec3 view_environment(uint material, ViewSurface surface, ViewFactors factors, m
 
 vec3 view_surroundings(uint material, ViewSurface surface, mat3 frame, vec3 wo_world, uint seed) {
     ViewFactors factors = view_factors(material, surface);
-    float turn = float(view_sample) / float(view_samples * view_samples);
+    // One sample does not turn.
+    float turn = view_samples > 1 ? (float(view_sample) + 0.5) / float(view_samples * view_samples) : 0.0;
     return view_environment(material, surface, factors, view_turned_frame(frame, factors.normal), wo_world, turn);
 }

@@ -2,7 +2,7 @@
 
 use luthier_gpu::{Package, RenderSettings, Scene, Shader};
 use luthier_layers::models::lobes::Axes;
-use luthier_lut::{AtlasLayout, Axis, Mapping, TableKind, TexelFormat};
+use luthier_lut::{AtlasLayout, Axis, Image, Mapping, TableKind, TexelFormat};
 use luthier_manifest::{AxesRecord, FunctionGroup, LobesRecord, ShadingModel};
 use luthier_shader::{Form, MaterialSet, Target};
 
@@ -122,8 +122,8 @@ fn in_a_white_furnace_lobes_show_their_albedo() {
     }
 }
 
-/// Without a first interface, whose energy is given by hand. One sample of a pixel, 32 directions of a lobe: .021 of the mean was
-/// measured, and .038 in axes, where the directions are turned otherwise.
+/// Without a first interface, whose energy is given by hand. With one sample of a pixel .070 of the mean was measured, and .057 in axes; with 16, which turn narrower
+/// blurs, .028 and .035.
 #[test]
 fn lobes_show_the_environment_that_a_brute_force_finds() {
     FRAMES.into_iter().for_each(compare);
@@ -132,10 +132,20 @@ fn lobes_show_the_environment_that_a_brute_force_finds() {
 fn compare(axes: Option<Axes>) {
     let Some(scene) = scene(0.0, 0.0, axes, TexelFormat::Rgba32Float) else { return };
     let sky = RenderSettings::new(luthier_gpu::Shape::Sphere).unwrap().environment;
-    let [blurred, sampled] = [0, 512].map(|environment_samples| {
-        let settings = RenderSettings { environment: sky.clone(), environment_samples, ..dark() };
+    let render = |samples, environment_samples| {
+        let settings = RenderSettings { environment: sky.clone(), samples, environment_samples, ..dark() };
         scene.render(&[0], &settings).unwrap()
-    });
+    };
+    let sampled = render(1, 512);
+    for (samples, limit) in [(1, 0.08), (4, 0.04)] {
+        let error = apart(&render(samples, 0), &sampled);
+        eprintln!("blurred environment in lobes, {axes:?}, {samples}: rms {error:.4} of the mean");
+        assert!(error < limit, "{axes:?}, {samples}: {error}");
+    }
+}
+
+/// Root of the mean squared difference of two pictures of the ball, over the mean of the second.
+fn apart(blurred: &Image, sampled: &Image) -> f64 {
     let (mut squares, mut sum, mut count) = (0.0, 0.0, 0.0);
     for (y, x) in (0..blurred.height).flat_map(|y| (0..blurred.width).map(move |x| (y, x))) {
         if hit(x, y).is_some() {
@@ -146,8 +156,5 @@ fn compare(axes: Option<Axes>) {
             }
         }
     }
-    let error = (squares / count).sqrt() / (sum / count);
-    eprintln!("blurred environment in lobes, {axes:?}: rms {error:.4} of the mean");
-    let limit = if axes.is_none() { 0.025 } else { 0.042 };
-    assert!(error < limit, "{axes:?}: {error}");
+    f64::sqrt(squares / count) / (sum / count)
 }

@@ -19,12 +19,8 @@ luthier_lut::named! {
         Propose = "propose",
         /// `luthier_albedo`; it brings `light`.
         Albedo = "albedo",
-        /// `luthier_environment`, which shows a prefiltered environment; it brings `light`. Lobes of the model `lobes` have 32 reads each.
+        /// `luthier_environment`, which shows a prefiltered environment; it brings `light`. Lobes of the model `lobes` have eight reads each.
         Environment = "environment",
-        /// `environment` with 16 reads for each lobe.
-        Environment16 = "environment-16",
-        /// `environment` with eight reads for each lobe.
-        Environment8 = "environment-8",
         /// `environment` with four reads for each lobe.
         Environment4 = "environment-4",
         /// `environment` with two reads for each lobe.
@@ -41,9 +37,7 @@ impl FunctionGroup {
     /// Reads of the environment for each lobe; `None` of a group that does not show it.
     pub fn environment_reads(self) -> Option<u32> {
         match self {
-            Self::Environment => Some(32),
-            Self::Environment16 => Some(16),
-            Self::Environment8 => Some(8),
+            Self::Environment => Some(8),
             Self::Environment4 => Some(4),
             Self::Environment2 => Some(2),
             Self::Environment1 => Some(1),
@@ -77,12 +71,12 @@ impl Functions {
     /// ```
     /// use luthier_manifest::{FunctionGroup, Functions};
     ///
-    /// let functions: Functions = [FunctionGroup::Environment8].into_iter().collect();
-    /// assert!(functions.has(FunctionGroup::Environment) && functions.environment_reads() == 8);
-    /// assert_eq!(Functions::from_iter([FunctionGroup::Environment]).environment_reads(), 32);
+    /// let functions: Functions = [FunctionGroup::Environment4].into_iter().collect();
+    /// assert!(functions.has(FunctionGroup::Environment) && functions.environment_reads() == 4);
+    /// assert_eq!(Functions::from_iter([FunctionGroup::Environment]).environment_reads(), 8);
     /// ```
     pub fn environment_reads(&self) -> u32 {
-        self.0.iter().filter_map(|group| group.environment_reads()).min().unwrap_or(32)
+        self.0.iter().filter_map(|group| group.environment_reads()).min().unwrap_or(8)
     }
 
     /// Whether there is no other group than `eval`.

@@ -116,9 +116,9 @@ fn shading_around(material: u32, surface: ShadingSurface, frame: mat3x3<f32>, wo
     let turned = shading_turned_frame(frame, factors.normal);
     let wo_there = (frame * wo) * turned;
     if kernel_inputs.words[kernel_inputs.materials + material].w > 0.0 {
-        // The samples of a pixel share the directions of a circle.
+        // The samples of a pixel share the directions of a circle. One sample does not turn.
         let samples = kernel_inputs.samples * kernel_inputs.samples;
-        let turn = f32(seed % samples) / f32(samples);
+        let turn = select((f32(seed % samples) + 0.5) / f32(samples), 0.0, samples == 1u);
         return lobes_environment(material, surface, turned, wo_there, turn)$open;
     }
     return shading_environment(material, factors, turned, wo_there)$open;

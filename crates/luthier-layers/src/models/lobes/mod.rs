@@ -96,7 +96,12 @@ pub(crate) const ROOM: Room = Room {
             include_str!("draws/wide.wgsl"),
             include_str!("draws/sample.wgsl")
         ),
-        environment: include_str!("environment.wgsl"),
+        environment: concat!(
+            include_str!("environment/lobe.wgsl"),
+            include_str!("environment/still.wgsl"),
+            include_str!("environment/turned.wgsl"),
+            include_str!("environment/sum.wgsl")
+        ),
     },
     twin: eval::twin,
     models: || vec![Box::new(Fitted::default())],

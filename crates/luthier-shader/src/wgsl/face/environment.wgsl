@@ -8,7 +8,7 @@ fn luthier_environment_part(part: LuthierPart, wo: vec3<f32>, frame: mat3x3<f32>
     let of_facets = 1.41421356 * sqrt(part.alpha.x * part.alpha.y);
     let width = select(of_facets, inverseSqrt(max(part.exponent, 1.0)), part.exponent >= 0.0);
     let direction = mirrored.x * frame[0] + mirrored.y * frame[1] + mirrored.z * frame[2];
-    return part.energy * luthier_environment_around(direction, min(width, 1.0));
+    return part.energy * luthier_environment_alone(direction, min(width, 1.0));
 }
 
 /// Light of the environment that the outer interface of a prepared material mirrors and that diffuse bases return. Lobes of interfaces below are left
@@ -20,8 +20,8 @@ fn luthier_environment_outside(prepared: LuthierPrepared, frame: mat3x3<f32>) ->
 }
 
 /// Radiance that a prepared material sends to the eye from a prefiltered environment; of other models than `lobes` that of the first interface, with one
-/// read, and of diffuse bases. The columns of the frame are tangent, bitangent and normal in the world of the environment. A turn in 0..1 moves the directions that
-/// are read for `lobes`: samples of a pixel with turns of their own see more of them.
+/// read, and of diffuse bases. The columns of the frame are tangent, bitangent and normal in the world of the environment. The turn is 0
+/// for one sample of a pixel; samples with turns of their own in 0..1 read other directions for `lobes`, whose mean is nearer.
 fn luthier_environment(prepared: LuthierPrepared, frame: mat3x3<f32>, turn: f32) -> vec3<f32> {
     if !prepared.open {
         return vec3<f32>(0.0);
