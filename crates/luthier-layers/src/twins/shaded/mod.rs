@@ -345,8 +345,16 @@ impl<T: ShaderTerms> Shaded<T> {
         [0, 1, 2].map(|c: usize| weight * value[c] + (1.0 - weight) * bare[c])
     }
 
+    /// [`Self::eval`] of [`frame::each_pair`], three values each.
+    pub fn eval_pairs(&self, wi: &[[f64; 3]], wo: &[[f64; 3]], values: &mut [f64]) {
+        for ([wi, wo], row) in frame::each_pair(wi, wo).zip(values.chunks_exact_mut(3)) {
+            row.copy_from_slice(&self.eval(wi, wo));
+        }
+    }
+
     fn eval_unmixed(&self, wi: DVec3, wo: DVec3) -> Rgb {
-        let [wi_here, wo_here] = [wi, wo].map(|w| frame::local(self.place.sample.normal, w));
+        let normal = self.place.sample.normal;
+        let [wi_here, wo_here] = [wi, wo].map(|w| if normal == DVec3::Z { w } else { frame::local(normal, w) });
         if [wi, wo, wi_here, wo_here].iter().any(|w| w.z <= 0.0) {
             return [0.0; 3];
         }
