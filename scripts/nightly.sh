@@ -13,7 +13,7 @@ cd "$(dirname "$0")/.."
 # Everything is computed: no results of earlier runs.
 export LUTHIER_CACHE=
 
-steps=(tests random fuzz release examples engines kind packages scale crash farm gpu book)
+steps=(tests random fuzz release examples engines kind packages python scale crash farm gpu book)
 # By its name only, because an emulator takes half an hour.
 named=(architecture)
 # Steps that take less than a minute of a processor: they are kept up to date with every change.
@@ -27,6 +27,7 @@ declare -A says=(
   [engines]='three.js and Babylon.js read the tables of `luthier table`, in furnaces in a browser'
   [kind]='a kind of table is added by the six files of CONTRIBUTING.md, and a reflectance model by a folder and a row; both are baked and judged'
   [packages]='every crate is packed, and built from its package'
+  [python]='the wheel of the Python module installs in a new environment, and its notebook, examples and tests run there'
   [crash]='bakes are killed at every call that changes files and at random moments, interrupted, run side by side, and given faulty files'
   [scale]='libraries of 100 and 1,000 generated materials are baked'
   [farm]='Slurm, Ninja, CMake and Make bake shares and merge them, a Slurm node is killed, jobs for Kubernetes and OpenCue are checked, and machines share a store of the S3 protocol that lies, refuses and is gone'
@@ -48,6 +49,7 @@ declare -A reads=(
   [engines]="crate:luthier-table crate:luthier-texture crates/luthier-cli/src scripts/engines scripts/patience.mjs $built"
   [kind]="lean:luthier-cli lean:luthier-gpu scripts/add-kind.sh scripts/add-kind.patch scripts/add-model.sh scripts/add-model.patch scripts/patched.sh $built"
   [packages]="crates README.md scripts/package.sh $built"
+  [python]="crate:luthier-python crates/luthier-python lean:luthier-cli materials scripts/python.sh $built"
   [scale]="lean:luthier-cli crates/luthier-material/examples scripts/many.sh $built"
   [crash]="lean:luthier-cli tests/crash $built"
   [farm]="lean:luthier-cli materials examples/farm scripts/farm $built"
@@ -83,6 +85,10 @@ engines() {
 kind() { ./scripts/add-kind.sh && ./scripts/add-model.sh; }
 book() { ./scripts/book.sh; }
 packages() { ./scripts/package.sh --verify; }
+python() {
+  cargo build --locked --release -p luthier-cli
+  LUTHIER=$PWD/target/release/luthier ./scripts/python.sh --install
+}
 crash() {
   cargo build --locked --release -p luthier-cli
   LUTHIER=$PWD/target/release/luthier ./tests/crash/all.sh

@@ -11,7 +11,7 @@ use luthier_workshop::root;
 use crate::workshop::Workshop;
 
 /// Scripts that the steps call.
-const CALLED: [&str; 15] = [
+const CALLED: [&str; 16] = [
     "random-tests.sh",
     "fuzz.sh",
     "run-examples.sh",
@@ -27,6 +27,7 @@ const CALLED: [&str; 15] = [
     "farm/descriptions.sh",
     "farm/s3.sh",
     "gpu.sh",
+    "python.sh",
 ];
 
 /// It passes, unless `FAILS` has its name. As `luthier` it has no window, and bakes a file.
@@ -36,9 +37,9 @@ case $* in view*) echo "--features view"; exit 1 ;; bake*) mkdir -p "$4" && echo
 "#;
 
 /// Every step that runs without its name.
-const ALL: [&str; 13] = [
-    "book", "crash", "engines", "examples", "farm", "fuzz", "gpu", "kind", "packages", "random", "release", "scale",
-    "tests",
+const ALL: [&str; 14] = [
+    "book", "crash", "engines", "examples", "farm", "fuzz", "gpu", "kind", "packages", "python", "random", "release",
+    "scale", "tests",
 ];
 
 struct Repository(Workshop);
