@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Tests of the Python module crates/luthier-python.
 #   scripts/python.sh [TEST...]   lays the package out beside the extension module that cargo has built, and runs crates/luthier-python/tests, or some
-#                                 (test_arrays, test_physics.Draws), with NumPy alone. Takes the command from LUTHIER, the module from beside it
+#                                 (test_arrays, test_physics.Draws), with NumPy alone. Takes the command from LUTHIER, the module from beside it. `cargo test`
+#                                 calls it (tests/python.rs). Exits with 3 where no Python has NumPy
 #   scripts/python.sh --install   makes a wheel, installs it in a new virtual environment, and runs there the tests, the notebook, the examples and bench.py.
 #                                 From PyPI: maturin, numpy, matplotlib, nbclient, ipykernel. The wheel stays in target/wheels/
 set -euo pipefail
@@ -9,6 +10,8 @@ cd "$(dirname "$0")/.."
 crate=$PWD/crates/luthier-python
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+# Fits that the command and the module share.
+export LUTHIER_TEST_STORE=${LUTHIER_TEST_STORE:-$work/store}
 
 if [ "${1-}" = --install ]; then
   python3 -m venv "$work/venv"
@@ -37,7 +40,7 @@ done
 for python in python3 /usr/bin/python3 none; do
   ! "$python" -c 'import numpy' 2>/dev/null || break
 done
-[ "$python" != none ] || { echo "error: no Python with NumPy (Debian: python3-numpy; scripts/wants.sh installs it)"; exit 1; }
+[ "$python" != none ] || { echo "error: no Python with NumPy (Debian: python3-numpy; scripts/wants.sh installs it)"; exit 3; }
 cp -r "$crate/python/luthier" "$work"
 cp "$built" "$work/luthier/_luthier.abi3.so"
 export PYTHONPATH=$work:$crate/tests PYTHONDONTWRITEBYTECODE=1

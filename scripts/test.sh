@@ -36,11 +36,6 @@ crashes() {
     echo "skipped: these tests want Linux"
   fi
 }
-# `cargo test` builds no module that no test of Rust links.
-python() {
-  cargo build --workspace --locked --features luthier-cli/view
-  ./scripts/python.sh
-}
 judge() {
   local device=()
   [ -z "$(./scripts/wants.sh --missing)" ] || device=(--no-device)
@@ -56,7 +51,6 @@ attempt "build" "${tests[@]}" --no-run
 attempt "unit and integration tests" after "build" all-tests
 # The programs that the tests have built and run. scripts/nightly.sh compares release builds.
 export LUTHIER=$PWD/target/debug/luthier LUTHIER_LAB=$PWD/target/debug/luthier-lab
-attempt "the Python module" after "build" python
 attempt "same bytes as in tests/golden" after "build" ./scripts/golden.sh --keep "$work/golden"
 attempt "kills, signals, bakes side by side, and faults of files" after "build" crashes
 attempt "pages are up to date" after "build" pages

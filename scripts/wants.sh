@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what the tests need, on Debian and its relatives: the software Vulkan driver, the shader validators, a display without a screen, a
-# browser, shells, groff, a C compiler and Python for tests that kill bakes, NumPy for those of the Python module, and Tint from npm. Elsewhere it says what is missing.
+# browser, shells, groff, a C compiler and Python for tests that kill bakes, NumPy for those of the Python module, and Tint from npm. Elsewhere it
+# says what is missing.
 #   scripts/wants.sh             installs
 #   scripts/wants.sh --missing   prints what is missing, without Tint
 set -euo pipefail

@@ -1,7 +1,7 @@
 """Shapes, types and memory of arrays; threads; errors."""
 
-import json
 import os
+import pickle
 import subprocess
 import sys
 import tempfile
@@ -187,6 +187,12 @@ class Errors(unittest.TestCase):
             chalk.eval(up, up, model="elek", colour="spectral")
         with self.assertRaisesRegex(ValueError, "wavelength"):
             chalk.eval(up, up, model="elek", wavelength_nm=-1.0)
+
+    def test_materials_are_pickled(self):
+        lacquer, wi = luthier.load(LACQUER), hemisphere(20)
+        again = pickle.loads(pickle.dumps(lacquer))
+        self.assertEqual(repr(again), "<luthier.Material 'lacquer' of 2 layers>")
+        np.testing.assert_array_equal(again.eval(wi, wi, "elek"), lacquer.eval(wi, wi, "elek"))
 
     def test_dicts_are_files(self):
         lacquer = luthier.load(LACQUER)

@@ -206,6 +206,10 @@ class Material:
         self._raw = raw
         self._functions: dict[str, Function] = {}
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Copies and processes get the text; files that it names are read again.
+        return _restored, (self.text, self.source)
+
     def __repr__(self) -> str:
         return f"<luthier.Material {self.name!r} of {self.layers} layers>"
 
@@ -307,6 +311,10 @@ class Material:
     def pdf(self, wi: Any, wo: Any, model: str | None = None, **at: Any) -> Array:
         """:meth:`Function.pdf` of :meth:`function`: density per steradian for ``wi`` and ``wo`` of shape ``(..., 3)``, shape ``(...)``."""
         return self.function(model, **at).pdf(wi, wo)
+
+
+def _restored(text: str, source: str) -> Material:
+    return Material(_luthier.parse(text, source))
 
 
 _KEPT = 16
