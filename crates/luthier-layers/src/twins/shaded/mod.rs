@@ -211,6 +211,13 @@ impl Shaded {
         Self::exact(fit, model, stack, wavelengths_nm, color, place, Parts::PLAIN)
     }
 
+    /// [`Self::eval`] of [`frame::each_pair`], three values each. It is not generic, so that the loop is compiled as this crate is, and not as its caller.
+    pub fn eval_pairs(&self, wi: &[[f64; 3]], wo: &[[f64; 3]], values: &mut [f64]) {
+        for ([wi, wo], row) in frame::each_pair(wi, wo).zip(values.chunks_exact_mut(3)) {
+            row.copy_from_slice(&self.eval(wi, wo));
+        }
+    }
+
     fn exact(
         fit: &Fit<'_>,
         model: ShadingModel,
@@ -343,13 +350,6 @@ impl<T: ShaderTerms> Shaded<T> {
         let Some((weight, bare)) = &self.side else { return value };
         let bare = bare.eval(wi, wo);
         [0, 1, 2].map(|c: usize| weight * value[c] + (1.0 - weight) * bare[c])
-    }
-
-    /// [`Self::eval`] of [`frame::each_pair`], three values each.
-    pub fn eval_pairs(&self, wi: &[[f64; 3]], wo: &[[f64; 3]], values: &mut [f64]) {
-        for ([wi, wo], row) in frame::each_pair(wi, wo).zip(values.chunks_exact_mut(3)) {
-            row.copy_from_slice(&self.eval(wi, wo));
-        }
     }
 
     fn eval_unmixed(&self, wi: DVec3, wo: DVec3) -> Rgb {
