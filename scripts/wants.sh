@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Installs what the tests need, on Debian and its relatives: the software Vulkan driver, the shader validators, a display without a screen, a
-# browser, shells, groff, a C compiler and Python for tests that kill bakes, and Tint from npm. Elsewhere it says what is missing.
+# browser, shells, groff, a C compiler and Python for tests that kill bakes, NumPy for those of the Python module, and Tint from npm. Elsewhere it
+# says what is missing.
 #   scripts/wants.sh             installs
 #   scripts/wants.sh --missing   prints what is missing, without Tint
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(mesa-vulkan-drivers libvulkan1 glslang-tools spirv-tools xvfb libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 chromium groff-base zsh fish
-  gcc libc6-dev python3 util-linux make ninja-build)
+  gcc libc6-dev python3 python3-numpy util-linux make ninja-build)
 
 missing() {
   command -v glslangValidator >/dev/null || echo glslangValidator
@@ -19,6 +20,8 @@ missing() {
   for program in groff zsh fish cc python3 setpriv make ninja; do
     command -v "$program" >/dev/null || echo "$program"
   done
+  # As in scripts/python.sh: the python3 that is found first may be one without NumPy, beside a system that has it.
+  python3 -c 'import numpy' 2>/dev/null || /usr/bin/python3 -c 'import numpy' 2>/dev/null || echo NumPy
   command -v chromium chromium-browser google-chrome >/dev/null || echo Chromium
   for library in libX11-xcb libXcursor libXi libxkbcommon-x11; do
     ldconfig -p 2>/dev/null | grep "$library\.so" >/dev/null || echo "$library"

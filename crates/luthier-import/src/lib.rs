@@ -30,6 +30,7 @@
 //! - `rules`: numbers that formats share, and how a file says them.
 //! - `pictures`: pictures of a source, unchanged or computed.
 //! - `gltf`, `mtlx`, `physically_based`: materials of glTF, of MaterialX, and of a database.
+//! - `together`: several imports in one folder, and the report on them.
 
 mod draft;
 mod error;
@@ -40,6 +41,7 @@ mod name;
 mod physically_based;
 mod pictures;
 mod rules;
+mod together;
 
 use std::collections::BTreeMap;
 use std::io;
@@ -49,6 +51,7 @@ pub use fate::{Fate, Line};
 pub use gltf::{GltfPoint, GltfPoints, gltf, gltf_points};
 pub use mtlx::materialx;
 pub use physically_based::physically_based;
+pub use together::{Source, report, together};
 
 /// Materials of a file, with their pictures.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -13,6 +13,23 @@ pub fn local(normal: DVec3, w: DVec3) -> DVec3 {
     DVec3::new(tangent.dot(w), bitangent.dot(w), n.dot(w))
 }
 
+/// Pairs of directions: of a single one and of many, or of as many of each.
+///
+/// # Panics
+/// If neither list has a single direction and their lengths differ.
+pub fn each_pair<'a>(wi: &'a [[f64; 3]], wo: &'a [[f64; 3]]) -> impl Iterator<Item = [DVec3; 2]> + 'a {
+    let count = match (wi.len(), wo.len()) {
+        (1, count) | (count, 1) => count,
+        (count, other) => {
+            assert_eq!(count, other, "directions of light and of the eye");
+            count
+        }
+    };
+    let step = |list: &[[f64; 3]]| usize::from(list.len() > 1);
+    let (step_i, step_o) = (step(wi), step(wo));
+    (0..count).map(move |k| [DVec3::from(wi[k * step_i]), DVec3::from(wo[k * step_o])])
+}
+
 /// The half vector of two unit directions and the cosine of either to it; `None` where they are opposite.
 ///
 /// For unit directions that cosine is half the length of their sum; in this form directions that were rounded to f32 do not cancel at

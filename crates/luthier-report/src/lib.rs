@@ -58,7 +58,9 @@ pub mod stability;
 mod svg;
 mod text;
 
-pub use audit::{Audit, AuditError, AuditVerdict, Candidate, Mistake, Model, Statement, Term, audit};
+pub use audit::{
+    Audit, AuditError, AuditVerdict, Candidate, Mistake, Model, Stated, StatedError, Statement, Term, audit,
+};
 pub use certificate::{Certificate, ErrorMap};
 pub use error::ReportError;
 pub use judge::evidence::{

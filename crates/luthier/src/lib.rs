@@ -6,15 +6,17 @@
 //! - [`Sources`]: scenes, surfaces and materials, each file read once, with diagnostics that have places in files;
 //! - [`Shading`]: the caller's choice of models, before that of the files; [`Bake`]: all options of a bake;
 //! - [`Bake::package`]: materials to a [`Package`], which is in memory until [`Package::write`] publishes it in a folder;
-//! - [`refusals`]: every reason to refuse or doubt a material.
+//! - [`refusals`]: every reason to refuse or doubt a material;
+//! - [`function`]: a model of a material as a function of two directions, without a bake.
 //!
 //! A bake computes what its [`Store`] lacks: [`MemoryStore`] starts empty, `luthier_store::DiskStore` keeps results between processes. An
 //! [`Observer`] is told of every job, and may cancel the bake.
 //!
-//! Modules, each of which uses only earlier ones: paths, pictures, refusals, shading, sources, bake.
+//! Modules, each of which uses only earlier ones: paths, pictures, refusals, shading, sources, function, bake.
 
 mod bake;
 mod error;
+pub mod function;
 mod paths;
 mod pictures;
 pub mod refusals;

@@ -90,7 +90,7 @@ impl Claims {
 }
 
 /// A reflectance model that evaluates at one wavelength.
-pub trait Model: Sync {
+pub trait Model: Send + Sync {
     /// Description of the model.
     fn info(&self) -> ModelInfo;
 

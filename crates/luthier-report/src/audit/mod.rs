@@ -8,6 +8,7 @@
 mod hypothesis;
 mod page;
 mod search;
+mod stated;
 mod truth;
 
 #[cfg(test)]
@@ -21,6 +22,7 @@ pub use hypothesis::Mistake;
 use hypothesis::{Encoding, Hypothesis};
 use luthier_table::Layout;
 use search::{Subject, search};
+pub use stated::{Stated, StatedError};
 use truth::Truth;
 pub use truth::{Model, Term};
 

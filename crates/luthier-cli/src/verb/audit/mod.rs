@@ -1,19 +1,16 @@
 //! `luthier audit`: judges a table of another program.
 
-mod statement;
-
 use std::path::Path;
 
 use luthier_export::input;
 use luthier_lut::Image;
-use luthier_report::{Audit, audit};
-use luthier_table::{Stored, rgbd};
+use luthier_report::{Audit, Stated, StatedError, audit};
+use luthier_table::{Nodes, Stored, rgbd};
 use luthier_terminal::{Failure, Outcome, complain, files, print};
 use luthier_texture::{Samples, table};
 use serde_json::json;
 
-use self::statement::statement;
-use crate::cli::{AuditOptions, SamplesName};
+use crate::cli::{AuditOptions, NodesName, SamplesName};
 
 /// Reads the table, judges it and prints the verdict.
 pub(crate) fn run(options: &AuditOptions) -> Outcome {
@@ -28,7 +25,27 @@ pub(crate) fn run(options: &AuditOptions) -> Outcome {
     if let Some(crop) = &options.crop {
         table.image = cropped(&table.image, crop)?;
     }
-    let (statement, words) = statement(options, &table)?;
+    let stated = Stated {
+        preset: options.preset,
+        model: options.model.as_deref(),
+        ior: options.ior.as_deref(),
+        axes: options.axes.as_deref(),
+        nodes: options.nodes.map(|nodes| match nodes {
+            NodesName::Centres => Nodes::CENTRES,
+            NodesName::Ends => Nodes::Ends,
+        }),
+        values: options.values.as_deref(),
+        channels: options.channel.as_ref().map(|names| names.iter().map(|&name| name as usize).collect()),
+        min_cos: options.min_cos,
+        min_alpha: options.min_alpha,
+    };
+    let (statement, words) =
+        stated.statement(table.image.channels, table.samples.step()).map_err(|error| match &error {
+            StatedError::Unknown { what, name, known } => {
+                Failure::unknown(what, name, &known.iter().map(String::as_str).collect::<Vec<_>>())
+            }
+            _ => Failure::Usage(error.into()),
+        })?;
     let found = audit(&table.image, &statement).map_err(Failure::input)?;
     let held = found.is_within(options.max_error);
     if options.json {

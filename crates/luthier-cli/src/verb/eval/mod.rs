@@ -1,8 +1,5 @@
 //! `eval`: a reflectance model of a material, in f64.
 
-mod function;
-mod live;
-mod place;
 mod polarised;
 mod shipped;
 mod sweep;
@@ -11,48 +8,34 @@ mod values;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use luthier_bake::fitted;
-use luthier_layers::model::{Estimate, Model, ModelInfo};
-use luthier_layers::models::lobes::{Fit, Fitted, Varied};
+use luthier::function::{self, Color, Inputs, Kind, Refusal, is_fitted, nearest_channel, textured};
+use luthier::{Files, Source, Sources, TomlFile, surface_map};
+use luthier_layers::model::{Estimate, WEIGHTS_MOST};
+use luthier_layers::models::lobes::{Fit, Varied};
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::{model, models};
-use luthier_layers::twins::shaded::{Growth, Place, Side};
-use luthier_manifest::ShadingModel;
+use luthier_layers::twins::shaded::Place;
 use luthier_material::{FileKind, Material};
-use luthier_optics::color::{Color, GRANIER_WAVELENGTHS_NM};
 use luthier_optics::stack::Stack;
+use luthier_terminal::{Failure, Outcome, complain, valid};
 use serde_json::{Value, json};
 
 use crate::cli::EvalOptions;
 use crate::directions;
 use crate::materials::valid_surfaces;
-use crate::model_inputs::ModelInputs;
 use crate::reradiation::Reradiation;
 use crate::store::store;
-use function::Kind;
-use luthier::refusals::of_function;
-use luthier::{Files, Source, Sources, TomlFile, surface_map};
-use luthier_terminal::{Failure, Outcome, complain, valid};
-use place::{add_layers, place, weight};
 use sweep::{Sweep, sweep};
 use values::values;
 
 /// Wavelength of tables against the angle, unless another is given.
 const WAVELENGTH_NM: f64 = 550.0;
 
-/// Subject of an evaluation: a model with its inputs, and a material.
+/// Subject of an evaluation, and what the command line adds to it.
 struct Subject {
-    model: Box<dyn Model>,
-    material: Material,
-    /// Gives the model `lobes` its lobes.
-    fit: Arc<Fit<'static>>,
-    place: Place,
-    /// Share of the surface that the first layer covers, if that is a coat with a weight and the model shows it.
-    weight: Option<f64>,
+    of: Arc<function::Subject>,
     /// Name of the surface, if the material is the one at a place of a surface.
     surface: Option<String>,
-    /// Whether effects of the file are in the place.
-    has_effects: bool,
     /// Wavelengths of the light and of the light seen, if these differ.
     bins_nm: Option<[f64; 2]>,
 }
@@ -60,21 +43,22 @@ struct Subject {
 impl Subject {
     /// The head of what is printed as JSON.
     fn head(&self) -> Value {
-        let mut head = json!({"model": self.model.info().name, "material": self.material.name});
+        let function::Subject { model, material, place, weight, has_effects, .. } = self.of.as_ref();
+        let mut head = json!({"model": model.info().name, "material": material.name});
         if let Some(surface) = &self.surface {
             head["surface"] = json!(surface);
         }
-        if let Some(weight) = self.weight {
+        if let Some(weight) = weight {
             head["weight"] = json!(weight);
         }
-        if self.has_effects || self.surface.is_some() {
+        if *has_effects || self.surface.is_some() {
             head["place"] = json!({
-                "normal": self.place.sample.normal.to_array(),
-                "flake_normal": self.place.under.flake_normal.to_array(),
-                "patina": self.place.patina.filter(|_| self.weight.is_none()).map(|patina| patina.amount),
+                "normal": place.sample.normal.to_array(),
+                "flake_normal": place.under.flake_normal.to_array(),
+                "patina": place.patina.filter(|_| weight.is_none()).map(|patina| patina.amount),
             });
-            if !self.place.layers.is_empty() {
-                let layers = self.place.layers.iter().map(|own| {
+            if !place.layers.is_empty() {
+                let layers = place.layers.iter().map(|own| {
                     json!({
                         "normal": own.normal.to_array(),
                         "alpha_factors": own.alpha_factors,
@@ -103,10 +87,10 @@ pub(crate) fn run(options: &EvalOptions) -> Outcome {
         return polarised::polarised(&material, &kind, &sweep::thetas_deg(options), options.json);
     };
     let subject = subject(options, name)?;
-    let asked =
+    let sweeps =
         [(options.albedo, Sweep::Albedo), (options.furnace, Sweep::Furnace), (options.environment, Sweep::Environment)];
-    if let Some((_, what)) = asked.into_iter().find(|(is_asked, _)| *is_asked) {
-        let kind = Kind::asked(options, &subject).unwrap_or(Kind::Wavelength(WAVELENGTH_NM));
+    if let Some((_, what)) = sweeps.into_iter().find(|(is_asked, _)| *is_asked) {
+        let kind = asked(options, &subject).unwrap_or(Kind::Wavelength(WAVELENGTH_NM));
         return sweep(&subject, what, &kind, options);
     }
     let pairs = match (&options.directions, options.wi, options.wo) {
@@ -118,97 +102,89 @@ pub(crate) fn run(options: &EvalOptions) -> Outcome {
     if let Some(folder) = &options.out {
         return shipped::shipped(&subject, folder, &pairs, options.json);
     }
-    if is_fitted(&subject.model.info()) && subject.place != luthier_layers::twins::shaded::Place::NONE {
+    if is_fitted(&subject.of.model.info()) && subject.of.place != Place::NONE {
         let what = "fitted to the stack at this place; `--out FOLDER` reads the rows that a bake ships";
         complain(&format!("note: lobes are {what}"));
     }
-    let kind = Kind::asked(options, &subject).unwrap_or_else(|| Kind::Color(subject.material.color()));
+    let kind = asked(options, &subject).unwrap_or_else(|| Kind::Color(subject.of.material.color()));
     values(&subject, kind, &pairs, options.json)
 }
 
-/// Whether a model is fitted to a simulation of the stack.
-fn is_fitted(model: &ModelInfo) -> bool {
-    model.shading().is_some_and(ShadingModel::is_fitted)
+/// The kind of values that the command line asks for; `None` where it asks for nothing particular.
+fn asked(options: &EvalOptions, subject: &Subject) -> Option<Kind> {
+    match (subject.bins_nm, options.wavelength) {
+        (Some(bins_nm), _) => Some(Kind::Reradiated(bins_nm)),
+        (None, Some(nm)) => Some(Kind::Wavelength(nm)),
+        (None, None) if options.three_wavelengths => {
+            Some(Kind::Color(Color::ThreeWavelengths(subject.of.material.bake.wavelengths_nm())))
+        }
+        (None, None) => options.rgb.then_some(Kind::Color(Color::Spectral)),
+    }
+}
+
+/// A kind of values for programs.
+fn describe(kind: &Kind) -> Value {
+    match kind {
+        Kind::Wavelength(nm) => json!({"wavelength_nm": nm}),
+        Kind::Reradiated([light, seen]) => json!({"excitation_nm": light, "wavelength_nm": seen}),
+        Kind::Color(Color::Spectral) => json!("spectral"),
+        Kind::Color(Color::ThreeWavelengths(nm)) => json!({"three_wavelengths_nm": nm}),
+    }
+}
+
+/// A refusal in the words of the command line.
+fn refused(refusal: Refusal) -> Failure {
+    let text = match &refusal {
+        Refusal::Live(text) => format!("--live: {text}"),
+        Refusal::Weights { given, layers } => format!(
+            "--weights has {given} numbers: give one for each of the {layers} layers, at most {WEIGHTS_MOST}, and one of them above 0"
+        ),
+        Refusal::NoWeight { file } => {
+            format!("{file} has no coat or film with a weight below 1 or in a map: leave --weight-factor out")
+        }
+        Refusal::NoPlace { model } => {
+            format!("model `{model}` has no place: leave --slab-factor and --film-factor out for a coat with a weight")
+        }
+        _ => return Failure::input(refusal),
+    };
+    Failure::Usage(anyhow::anyhow!(text))
 }
 
 fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
-    let mut known = model(name).ok_or_else(|| {
+    let known = model(name).ok_or_else(|| {
         let names: Vec<&str> = models().iter().map(|model| model.info().name).collect();
         Failure::unknown("model", name, &names)
     })?;
-    let inputs = &options.inputs;
-    let (mut materials, picked) = materials(options)?;
-    let mut fit: Arc<Fit<'static>> = Arc::new(Varied::of);
-    if is_fitted(&known.info()) {
-        let store = store()?;
-        fit = Arc::new(|stack, color, varying| fitted(stack, color, varying, store));
-        known = Box::new(Fitted::by(fit.clone()));
-    }
-    let (shown, dropped) = inputs.shown(&materials[0], known.as_ref());
-    let (maps, unshown) = inputs.layer_maps(&materials[0], known.as_ref());
-    let has_weight_map = inputs.weight_map(&materials[0]).is_some();
+    let (inputs, given): (_, Inputs) = (&options.inputs, options.inputs.given());
+    let (first, other, picked) = materials(options)?;
+    let fit: Arc<Fit<'static>> = if is_fitted(&known.info()) { function::fits(store()?) } else { Arc::new(Varied::of) };
+    let (shown, dropped) = given.shown(&first, known.as_ref());
+    let (maps, unshown) = given.layer_maps(&first, known.as_ref());
+    let has_weight_map = given.weight_map(&first).is_some();
     inputs.check(known.as_ref(), &shown, has_weight_map || !maps.is_empty(), picked.is_some(), options.environment)?;
     if !maps.is_empty() && (options.furnace || options.environment) {
         let text = "a furnace and an environment have no place: leave the maps of layers out with `--no-effects`";
         return Err(Failure::Usage(anyhow::anyhow!(text)));
     }
-    inputs.check_weights(&materials[0])?;
-    let mut model = inputs.give(known);
-
-    // Without another material, the first is everywhere.
-    let index = model.stack_index().min(materials.len() - 1);
-    let material = materials.swap_remove(index);
-    if let Some(error) = of_function(&material, name) {
-        return Err(Failure::Input(anyhow::anyhow!("{}: {}", error.label, error.message)));
-    }
+    let (surface, normal) = picked.unzip();
+    let mut of = function::Subject::new(known, first, other, fit, &given, normal).map_err(refused)?;
+    let file = &of.material.source;
     if !dropped.is_empty() {
-        let (names, file) = (dropped.join(" and "), &material.source);
+        let names = dropped.join(" and ");
         complain(&format!("note: model `{name}` does not show the {names} of {file}; `elek` and `weidlich-wilkie` do"));
     }
-
     if !unshown.is_empty() {
-        let (names, file) = (unshown.join(" and "), &material.source);
+        let names = unshown.join(" and ");
         complain(&format!("note: model `{name}` does not show {names} of {file}"));
     }
-
     let mut bins_nm = None;
     if let (Some(path), Some(excitation), Some(seen)) = (&inputs.matrix, inputs.excitation, options.wavelength) {
         let matrix = Reradiation::read(path)?;
-        let (reradiated, bins) = matrix.between(excitation, seen, |nm| at(&material.stack, nm))?;
-        (model, bins_nm) = (Box::new(reradiated), Some(bins));
+        let (reradiated, bins) = matrix.between(excitation, seen, |nm| at(&of.material.stack, nm))?;
+        of.model = textured(of.place.sample, Box::new(reradiated));
+        bins_nm = Some(bins);
     }
-    let mut place = place(&material, inputs, &shown)?;
-    add_layers(&mut place, &material, model.info().shading(), inputs, &maps)?;
-    if inputs.has_weight_factor() && material.weight().is_none() {
-        let file = &material.source;
-        let text = format!("{file} has no coat or film with a weight below 1 or in a map: leave --weight-factor out");
-        return Err(Failure::Usage(anyhow::anyhow!(text)));
-    }
-    let weight = weight(&material, inputs)?.filter(|_| ModelInputs::shows_weight(&material, model.as_ref()));
-    if let Some(weight) = weight.filter(|_| model.info().shading().is_some()) {
-        place.patina = Some(Growth::of_coat(weight));
-        let side = if material.weighs_film() { Side::Film } else { Side::Coat };
-        place.side = material.has_side().then_some(side);
-    } else if weight.is_some() && (place.sample.slab_factor, place.sample.film_factor) != (1.0, 1.0) {
-        let text =
-            format!("model `{name}` has no place: leave --slab-factor and --film-factor out for a coat with a weight");
-        return Err(Failure::Usage(anyhow::anyhow!(text)));
-    }
-    if let Some((_, normal)) = picked.as_ref().filter(|(_, normal)| !inputs.has_normal() && normal.z < 1.0) {
-        place.sample.normal = *normal;
-    }
-    let surface = picked.map(|(surface, _)| surface);
-    let has_effects = shown != luthier_material::Effects::default() || !maps.is_empty() || !inputs.live.is_empty();
-    Ok(Subject {
-        model: ModelInputs::textured(place.sample, model),
-        material,
-        fit,
-        place,
-        weight,
-        surface,
-        has_effects,
-        bins_nm,
-    })
+    Ok(Subject { of: Arc::new(of), surface, bins_nm })
 }
 
 /// Name of a surface, and the normal at the place.
@@ -216,12 +192,14 @@ type Picked = (String, DVec3);
 
 /// The material of the file and the material of `--other`. For a surface file, it is the material at the place, with the name of the surface and its
 /// normal there.
-fn materials(options: &EvalOptions) -> Outcome<(Vec<Material>, Option<Picked>)> {
+fn materials(options: &EvalOptions) -> Outcome<(Material, Option<Material>, Option<Picked>)> {
     let inputs = &options.inputs;
     let file = TomlFile::read(&options.file)?;
     if file.kind() != FileKind::Surface {
         let other = inputs.other.as_ref().map(|other| Source::read(other)).transpose()?;
-        return Ok((valid([Source::of(file)].into_iter().chain(other).collect(), false)?, None));
+        let mut materials = valid([Source::of(file)].into_iter().chain(other).collect(), false)?.into_iter();
+        let first = materials.next().unwrap_or_else(|| unreachable!("the file is one of the materials"));
+        return Ok((first, materials.next(), None));
     }
     if inputs.other.is_some() {
         let text = "a surface has materials of its own: leave out `--other`";
@@ -231,14 +209,8 @@ fn materials(options: &EvalOptions) -> Outcome<(Vec<Material>, Option<Picked>)> 
     sources.refuse_surfaces();
     let surface = valid_surfaces(&sources.surfaces)?.swap_remove(0);
     let mut materials = valid(sources.materials, false)?;
-    let pick = surface_map(&surface).pick(inputs.uv().unwrap_or(DVec2::ZERO));
-    Ok((vec![materials.swap_remove(pick.stack)], Some((surface.name, pick.normal))))
-}
-
-/// The channel whose absorption and albedo are those at a wavelength.
-fn nearest_channel(wavelength_nm: f64) -> usize {
-    let distances = GRANIER_WAVELENGTHS_NM.map(|nm| (nm - wavelength_nm).abs());
-    (0..3).min_by(|&a, &b| distances[a].total_cmp(&distances[b])).unwrap_or(1)
+    let pick = surface_map(&surface).pick(inputs.given().uv.unwrap_or(DVec2::ZERO));
+    Ok((materials.swap_remove(pick.stack), None, Some((surface.name, pick.normal))))
 }
 
 /// The stack at a wavelength, for the nearest channel.

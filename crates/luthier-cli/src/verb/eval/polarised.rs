@@ -1,13 +1,13 @@
 //! Reflectances of both polarisations.
 
+use luthier::function::Kind;
 use luthier_material::Material;
 use luthier_optics::Rgb;
 use luthier_optics::stack::{Base, Stack};
 use luthier_terminal::{Failure, Outcome, print};
 use serde_json::{Value, json};
 
-use super::function::Kind;
-use super::significant;
+use super::{describe, significant};
 
 /// Prints the reflectances of the one interface of a material, its films included, for light polarised normal to the plane of
 /// incidence (s) and in it (p).
@@ -41,7 +41,7 @@ pub(crate) fn polarised(material: &Material, kind: &Kind, thetas_deg: &[f64], js
             |(theta_deg, [s, p])| json!({"theta_i_deg": theta_deg, "refl_s": s[..columns], "refl_p": p[..columns]}),
         );
         let rows: Value = rows.collect();
-        let head = json!({"material": material.name, "color": kind.describe(), "polarised": rows});
+        let head = json!({"material": material.name, "color": describe(kind), "polarised": rows});
         return print(&format!("{head:#}"));
     }
     let [s, p] = ["refl_s", "refl_p"].map(|what| {

@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
+use luthier::function::{Color, Kind};
 use luthier_export::{Folder, shared};
 use luthier_layers::model::Estimate;
 use luthier_manifest::ColorMode;
-use luthier_optics::color::Color;
 use luthier_report::{Rows, Subject as Judged, Weights};
 use luthier_terminal::{Failure, Outcome};
 use rayon::prelude::*;
 
-use super::function::Kind;
 use super::{Subject, values};
 use crate::directions::Angles;
 use crate::materials::is_baked_as;
@@ -21,7 +20,7 @@ pub(super) fn shipped(subject: &Subject, folder: &Path, pairs: &[[Angles; 2]], j
     let bake = Folder::open(folder)?;
     let (manifest, textures) = (bake.manifest(), bake.textures()?);
     drop(lock);
-    let (material, model) = (&subject.material, subject.model.info().name);
+    let (material, model) = (&subject.of.material, subject.of.model.info().name);
     let number = manifest.materials.iter().position(|entry| entry.name == material.name);
     let number = number.ok_or_else(|| missing(folder, &format!("the bake has no material `{}`", material.name)))?;
     let entry = &manifest.materials[number];
@@ -37,7 +36,7 @@ pub(super) fn shipped(subject: &Subject, folder: &Path, pairs: &[[Angles; 2]], j
     // Only this material is evaluated.
     let stacks = vec![material.reflecting_stack().into_owned(); manifest.materials.len()];
     let judged = Judged { manifest, textures, stacks, maps: Vec::new(), films: Vec::new() };
-    let rows = Rows::at(&judged, number, &subject.place, Weights::Exact).map_err(Failure::input)?;
+    let rows = Rows::at(&judged, number, &subject.of.place, Weights::Exact).map_err(Failure::input)?;
     let found: Vec<Vec<Estimate>> = pairs
         .par_iter()
         .map(|[wi, wo]| rows.eval(wi.direction(), wo.direction()).map(Estimate::exact).to_vec())

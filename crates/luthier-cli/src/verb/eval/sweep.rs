@@ -1,5 +1,6 @@
 //! Tables against the angle of the eye.
 
+use luthier::function::{Albedo, Function, Kind, parts, textured};
 use luthier_layers::directional_albedo::DirectionalAlbedo;
 use luthier_layers::furnace::furnace;
 use luthier_layers::model::{Estimate, Model};
@@ -11,11 +12,9 @@ use luthier_terminal::{Failure, Outcome, print};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::function::{Albedo, Function, Kind, parts};
-use super::{Subject, WAVELENGTH_NM, at, error, significant};
+use super::{Subject, WAVELENGTH_NM, at, describe, error, significant};
 use crate::cli::EvalOptions;
 use crate::directions::Angles;
-use crate::model_inputs::ModelInputs;
 
 /// Angles, in degrees, unless others are given.
 const THETAS_DEG: [f64; 18] =
@@ -46,10 +45,10 @@ pub(crate) fn thetas_deg(options: &EvalOptions) -> Vec<f64> {
 
 /// The model with the parts that the file chooses; `None` if it chooses none.
 fn of_file(subject: &Subject) -> Outcome<Option<Box<dyn Model>>> {
-    let (parts, reflectance) = parts(subject);
-    let info = subject.model.info();
+    let (parts, reflectance) = parts(&subject.of);
+    let info = subject.of.model.info();
     let (name, Some(model)) = (info.name, info.shading()) else { return Ok(None) };
-    let lower = subject.material.bake.lower_reflectance.unwrap_or_default();
+    let lower = subject.of.material.bake.lower_reflectance.unwrap_or_default();
     if lower == LowerReflectance::InAir && model.is_path() {
         let text = format!(
             "`--furnace` of `{name}` has interfaces in their places, and the file chooses `lower_reflectance = \"{lower}\"`: leave that out"
@@ -70,9 +69,9 @@ fn of_file(subject: &Subject) -> Outcome<Option<Box<dyn Model>>> {
             format!("`--furnace` of `{name}` has FGD-infinity, and the file chooses `{reflectance}`: leave that out");
         return Err(Failure::Input(anyhow::anyhow!(text)));
     }
-    let beams = parts.beams.leaning(subject.place.under.inner_normal);
+    let beams = parts.beams.leaning(subject.of.place.under.inner_normal);
     let model = (room(model).composed)(Parts { beams, ..parts });
-    Ok(model.map(|model| ModelInputs::textured(subject.place.sample, model)))
+    Ok(model.map(|model| textured(subject.of.place.sample, model)))
 }
 
 /// Prints a table.
@@ -81,13 +80,15 @@ pub(crate) fn sweep(subject: &Subject, what: Sweep, kind: &Kind, options: &EvalO
         Kind::Wavelength(nm) | Kind::Reradiated([_, nm]) => *nm,
         Kind::Color(_) => WAVELENGTH_NM,
     };
-    let stack = at(&subject.material.stack, wavelength_nm);
+    let stack = at(&subject.of.material.stack, wavelength_nm);
     let own = if what == Sweep::Furnace { of_file(subject)? } else { None };
-    let model = own.as_deref().unwrap_or(subject.model.as_ref());
-    let function = (what == Sweep::Albedo).then(|| Function::new(subject, kind));
+    let model = own.as_deref().unwrap_or(subject.of.model.as_ref());
+    let function = (what == Sweep::Albedo).then(|| Function::new(&subject.of, kind));
     // A furnace and an environment are of all layers; a coat with a weight is a blend of two surfaces.
-    let bare =
-        subject.weight.map(|weight| (weight, at(&subject.material.bare(&subject.material.stack), wavelength_nm)));
+    let bare = subject
+        .of
+        .weight
+        .map(|weight| (weight, at(&subject.of.material.bare(&subject.of.material.stack), wavelength_nm)));
     let of_stack = |stack: &_, wo| match what {
         Sweep::Albedo | Sweep::Furnace => single(furnace(model, stack, wo)),
         Sweep::Environment => {
@@ -111,7 +112,7 @@ pub(crate) fn sweep(subject: &Subject, what: Sweep, kind: &Kind, options: &EvalO
         let entries: Value = rows.iter().map(|(theta_deg, row)| entry(what, *theta_deg, row)).collect();
         let mut head = subject.head();
         match kind {
-            Kind::Color(_) => head["color"] = kind.describe(),
+            Kind::Color(_) => head["color"] = describe(kind),
             Kind::Wavelength(_) | Kind::Reradiated(_) => head["wavelength_nm"] = json!(wavelength_nm),
         }
         if let Some([excitation_nm, _]) = subject.bins_nm {

@@ -1,18 +1,18 @@
 //! Values for pairs of directions.
 
+use luthier::function::{Function, Kind};
 use luthier_layers::model::Estimate;
 use luthier_terminal::{Outcome, print};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::function::{Function, Kind};
-use super::{Subject, error, significant};
+use super::{Subject, describe, error, significant};
 use crate::directions::Angles;
 
 /// Prints the values for pairs (wi, wo).
 pub(crate) fn values(subject: &Subject, kind: Kind, pairs: &[[Angles; 2]], json: bool) -> Outcome {
-    let function = Function::new(subject, &kind);
-    let is_estimate = function.estimator().is_some();
+    let function = Function::new(&subject.of, &kind);
+    let is_estimate = function.is_estimate();
     let found: Vec<Vec<Estimate>> =
         pairs.par_iter().map(|[wi, wo]| function.values(wi.direction(), wo.direction())).collect();
     show(subject.head(), kind, is_estimate, pairs, &found, json)
@@ -38,7 +38,7 @@ pub(super) fn show(
             row
         });
         let rows = Value::from_iter(rows);
-        head["color"] = kind.describe();
+        head["color"] = describe(&kind);
         head["values"] = rows;
         return print(&format!("{head:#}"));
     }

@@ -2,25 +2,19 @@
 
 mod page;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use luthier_export::{input, label};
-use luthier_import::{Fate, Import, ImportError, Imported, Line, import};
+use luthier_import::{Fate, ImportError, Imported, Line, Source, import, report, together};
 use luthier_terminal::{Failure, Outcome, counted, deliver, files, print};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::cli::ImportOptions;
 
 /// Name of the file that says what became of each property.
 const REPORT: &str = "import.json";
-
-/// A file that was read.
-struct Read {
-    label: String,
-    import: Import,
-}
 
 /// Imports files, and writes nothing if one of them cannot be read.
 pub(crate) fn run(options: &ImportOptions) -> Outcome {
@@ -35,10 +29,10 @@ pub(crate) fn run(options: &ImportOptions) -> Outcome {
         let import = import.map_err(|error: ImportError| {
             Failure::Input(anyhow::Error::new(error).context(path.display().to_string()))
         })?;
-        read.push(Read { label, import });
+        read.push(Source { label, import });
     }
     let written = together(&mut read);
-    let report = report(&read);
+    let report = report(&read, luthier_export::GENERATOR);
     if let Some(html) = &options.html {
         refuse_among(html, options, &written)?;
     }
@@ -47,42 +41,6 @@ pub(crate) fn run(options: &ImportOptions) -> Outcome {
         deliver(&page::page(&read), Some(html))?;
     }
     print(&if options.json { format!("{report:#}") } else { text(options, &read) })
-}
-
-/// All files to write by relative path. Where several imports have files of one name and other bytes, the later ones get numbers.
-fn together(read: &mut [Read]) -> BTreeMap<String, Vec<u8>> {
-    let mut all: BTreeMap<String, Vec<u8>> = BTreeMap::new();
-    for Read { import, .. } in read {
-        let pictures = std::mem::take(&mut import.pictures);
-        let own: BTreeSet<String> = pictures.keys().cloned().collect();
-        for (path, bytes) in pictures {
-            // No picture takes the name of another one of its import, which texts still have.
-            let is_free = |place: &str| all.get(place).is_none_or(|known| *known == bytes);
-            let place = free(&path, |place| is_free(place) && (place == path || !own.contains(place)));
-            if place != path {
-                let [from, to] = [&path, &place].map(|path| format!("\"{path}\""));
-                import.materials.iter_mut().for_each(|material| material.text = material.text.replace(&from, &to));
-            }
-            all.insert(place, bytes);
-        }
-        for material in &mut import.materials {
-            let place = free(&format!("{}.toml", material.name), |place| !all.contains_key(place));
-            let name = place.trim_end_matches(".toml").to_owned();
-            let [from, to] = [&material.name, &name].map(|name| format!("\nname = \"{name}\"\n"));
-            material.text = material.text.replacen(&from, &to, 1);
-            material.name = name;
-            all.insert(place, material.text.clone().into_bytes());
-        }
-    }
-    all
-}
-
-/// A path, or the first with a number before its ending, that is free.
-fn free(path: &str, is_free: impl Fn(&str) -> bool) -> String {
-    let (stem, ending) = path.rsplit_once('.').unwrap_or((path, ""));
-    let numbered = (2..).map(|number| format!("{stem}-{number}.{ending}"));
-    let found = std::iter::once(path.to_owned()).chain(numbered).find(|path| is_free(path));
-    found.unwrap_or_else(|| unreachable!("numbers do not end"))
 }
 
 /// Writes all files; none, if one is there and may not be replaced.
@@ -122,22 +80,8 @@ fn refuse_among(html: &Path, options: &ImportOptions, written: &BTreeMap<String,
     }
 }
 
-fn report(read: &[Read]) -> Value {
-    let line =
-        |Line { property, fate, note }: &Line| json!({ "property": property, "fate": fate.name(), "note": note });
-    let material = |Imported { name, source_name, lines, .. }: &Imported| {
-        let lines: Vec<Value> = lines.iter().map(line).collect();
-        json!({ "name": name, "source_name": source_name, "file": format!("{name}.toml"), "properties": lines })
-    };
-    let sources = read.iter().map(|Read { label, import }| {
-        let materials: Vec<Value> = import.materials.iter().map(material).collect();
-        json!({ "source": label, "materials": materials, "properties": import.lines.iter().map(line).collect::<Vec<_>>() })
-    });
-    json!({ "generator": luthier_export::GENERATOR, "sources": sources.collect::<Vec<_>>() })
-}
-
 /// A line for each material, and one for each property that is not in its file as it was.
-fn text(options: &ImportOptions, read: &[Read]) -> String {
+fn text(options: &ImportOptions, read: &[Source]) -> String {
     let mut out = String::new();
     let say = |lines: &[Line]| {
         let mut text = String::new();
@@ -147,7 +91,7 @@ fn text(options: &ImportOptions, read: &[Read]) -> String {
         }
         text
     };
-    for Read { label, import } in read {
+    for Source { label, import } in read {
         let _ = writeln!(out, "{label}: {}", counted(import.materials.len(), "material"));
         out.push_str(&say(&import.lines));
         for Imported { name, source_name, lines, .. } in &import.materials {

@@ -5,7 +5,7 @@ use std::fmt::{self, Write as _};
 use luthier_gallery::escape;
 use luthier_import::{Fate, Imported, Line};
 
-use super::{Read, counts};
+use super::{Source, counts};
 
 const STYLE: &str = "body { max-width: 60rem; margin: 2rem auto; padding: 0 1rem; font: 16px/1.5 sans-serif; color: #222; background: #fff }
 table { border-collapse: collapse; width: 100% }
@@ -17,21 +17,21 @@ small { color: #666 } .kept, .host { color: #666 } .approximated { color: #8a5a0
 ";
 
 /// The page: for each file its materials, and for each of these its properties. Materials that lost something are open.
-pub(super) fn page(read: &[Read]) -> String {
+pub(super) fn page(read: &[Source]) -> String {
     let mut out = String::new();
     // Writing to a String does not fail.
     let _ = write(&mut out, read);
     out
 }
 
-fn write(out: &mut String, read: &[Read]) -> fmt::Result {
+fn write(out: &mut String, read: &[Source]) -> fmt::Result {
     let labels: Vec<&str> = read.iter().map(|read| read.label.as_str()).collect();
     let title = escape(&format!("Import of {}", labels.join(", ")));
     writeln!(out, "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">")?;
     writeln!(out, "<meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}</title>")?;
     writeln!(out, "<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>")?;
     writeln!(out, "<p>{}</p>", escape(&counts(read.iter().flat_map(lines))))?;
-    for Read { label, import } in read {
+    for Source { label, import } in read {
         writeln!(out, "<h2>{}</h2>", escape(label))?;
         if !import.lines.is_empty() {
             table(out, &import.lines)?;
@@ -43,7 +43,7 @@ fn write(out: &mut String, read: &[Read]) -> fmt::Result {
     writeln!(out, "</body>\n</html>")
 }
 
-fn lines(read: &Read) -> impl Iterator<Item = &Line> {
+fn lines(read: &Source) -> impl Iterator<Item = &Line> {
     read.import.lines.iter().chain(read.import.materials.iter().flat_map(|material| &material.lines))
 }
 
@@ -98,7 +98,7 @@ mod tests {
         };
         let materials = vec![material("lost", Fate::Dropped), material("whole", Fate::ClosedForm)];
         let import = Import { materials, lines: vec![line("lights", Fate::Host, "")], ..Import::default() };
-        let page = page(&[Read { label: "<a>.gltf".to_owned(), import }]);
+        let page = page(&[Source { label: "<a>.gltf".to_owned(), import }]);
         assert!(!page.contains("<script>") && !page.contains("<b>") && !page.contains("<a>"), "{page}");
         assert!(page.contains("&lt;script&gt;") && page.contains("a &amp; b"), "{page}");
         assert!(page.contains("<p>2 kept, 1 closed form, 1 dropped, 1 the host's</p>"), "{page}");

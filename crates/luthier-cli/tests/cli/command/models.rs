@@ -8,10 +8,10 @@ use super::sources::sources;
 
 /// Files that name single models, tests and the project's own pages apart.
 const NAMING: [(&str, &str); 20] = [
-    ("cli/src/model_inputs.rs", "names the model that could show what another drops"),
     ("cli/src/simulated.rs", "takes the cheapest model where only stacks count"),
     ("cli/src/verb/bench/", "times everything over Phong's model"),
     ("cli/src/verb/gallery/page.rs", "shows a second model beside that of the file"),
+    ("crates/luthier/src/function/inputs.rs", "names the model that could show what another drops"),
     ("crates/luthier/src/refusals/energy.rs", "names the model that returns what the simulation does"),
     ("layers/src/models/belcour/mod.rs", "is the model"),
     ("layers/src/models/elek/mod.rs", "is the model"),

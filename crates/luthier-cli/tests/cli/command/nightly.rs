@@ -11,7 +11,7 @@ use luthier_workshop::root;
 use crate::workshop::Workshop;
 
 /// Scripts that the steps call.
-const CALLED: [&str; 17] = [
+const CALLED: [&str; 18] = [
     "random-tests.sh",
     "fuzz.sh",
     "run-examples.sh",
@@ -29,6 +29,7 @@ const CALLED: [&str; 17] = [
     "farm/descriptions.sh",
     "farm/s3.sh",
     "gpu.sh",
+    "python.sh",
 ];
 
 /// It passes, unless `FAILS` has its name. As `luthier` it has no window, and bakes a file.
@@ -38,7 +39,7 @@ case $* in view*) echo "--features view"; exit 1 ;; bake*) mkdir -p "$4" && echo
 "#;
 
 /// Every step that runs without its name.
-const ALL: [&str; 15] = [
+const ALL: [&str; 16] = [
     "book",
     "crash",
     "engines",
@@ -50,6 +51,7 @@ const ALL: [&str; 15] = [
     "kind",
     "packages",
     "promises",
+    "python",
     "random",
     "release",
     "scale",

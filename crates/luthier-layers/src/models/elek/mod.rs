@@ -78,7 +78,7 @@ impl Elek {
         wo: DVec3,
         normal_below: DVec3,
     ) -> [f64; C] {
-        walk(self, layers, terms, wi, wo, Tilts { below: normal_below, own: &[] }).value()
+        walk(self, layers, terms, wi, wo, Tilts { below: normal_below, own: &[] }, false).value()
     }
 
     /// [`Self::eval_below`] of a stack, with factors on the reflectance of the first interface and of all others.

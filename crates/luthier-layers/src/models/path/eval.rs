@@ -22,10 +22,10 @@ pub(in crate::models) fn twin(model: impl PathModel + Debug + Send + Sync + 'sta
 
 impl<M: PathModel + Debug + Send + Sync> Shade for Twin<M> {
     fn eval(&self, terms: &dyn ShaderTerms, _: &Under, tilts: Tilts<'_>, wi: DVec3, wo: DVec3) -> Rgb {
-        walk(&self.model, &self.layers.layers, terms, wi, wo, tilts).value()
+        walk(&self.model, &self.layers.layers, terms, wi, wo, tilts, false).value()
     }
 
     fn walked(&self, terms: &dyn ShaderTerms, tilts: Tilts<'_>, wi: DVec3, wo: DVec3) -> Option<Walked<3>> {
-        Some(walk(&self.model, &self.layers.layers, terms, wi, wo, tilts))
+        Some(walk(&self.model, &self.layers.layers, terms, wi, wo, tilts, true))
     }
 }

@@ -100,7 +100,13 @@ impl<const C: usize> Walked<C> {
     }
 }
 
-/// Walks with light from `wi` through the layers to `wo`.
+/// Share of light that a slab of an optical depth lets through on a path of some thicknesses. Clear slabs, of which there are many, take no exponential.
+fn through(optical_depth: f64, path: f64) -> f64 {
+    if optical_depth == 0.0 { 1.0 } else { libm::exp(-optical_depth * path) }
+}
+
+/// Walks with light from `wi` through the layers to `wo`. The shares of light on the way down and up are found if they are asked for (`has_shares`);
+/// otherwise they are 1.
 pub(crate) fn walk<const C: usize>(
     model: &impl PathModel,
     layers: &[Layer<C>],
@@ -108,6 +114,7 @@ pub(crate) fn walk<const C: usize>(
     wi: DVec3,
     wo: DVec3,
     tilts: Tilts<'_>,
+    has_shares: bool,
 ) -> Walked<C> {
     let mut interfaces = [0.0; C];
     if wi.z <= 0.0 || wo.z <= 0.0 {
@@ -162,9 +169,11 @@ pub(crate) fn walk<const C: usize>(
             }
         };
         for c in 0..C {
-            passed[c] *= model.kept(entered[c], left[c], libm::exp(-optical_depth[c] * path)) * facing;
-            down[c] *= facing * entered[c] * libm::exp(-optical_depth[c] / wi_below.z);
-            up[c] *= left[c] * libm::exp(-optical_depth[c] / wo_below.z);
+            passed[c] *= model.kept(entered[c], left[c], through(optical_depth[c], path)) * facing;
+            if has_shares {
+                down[c] *= facing * entered[c] * through(optical_depth[c], 1.0 / wi_below.z);
+                up[c] *= left[c] * through(optical_depth[c], 1.0 / wo_below.z);
+            }
         }
         (wi_local, wo_local) = (wi_below, wo_below);
     }

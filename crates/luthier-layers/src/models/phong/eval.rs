@@ -20,6 +20,10 @@ pub(super) fn twin(given: &Given<'_>) -> Box<dyn Shade> {
 
 impl Shade for Twin {
     fn eval(&self, _: &dyn ShaderTerms, _: &Under, _: Tilts<'_>, wi: DVec3, wo: DVec3) -> Rgb {
-        self.0.map(|coefficients| coefficients.eval(wi, wo))
+        if wi.z <= 0.0 || wo.z <= 0.0 {
+            return [0.0; 3];
+        }
+        let lobe = self.0[0].lobe(wi, wo);
+        self.0.map(|coefficients| coefficients.with_lobe(wi, lobe))
     }
 }

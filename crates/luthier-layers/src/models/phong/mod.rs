@@ -85,8 +85,17 @@ impl Coefficients {
         if wi.z <= 0.0 || wo.z <= 0.0 {
             return 0.0;
         }
+        self.with_lobe(wi, self.lobe(wi, wo))
+    }
+
+    /// `max(0, r.wo)^e`.
+    fn lobe(&self, wi: DVec3, wo: DVec3) -> f64 {
+        lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, self.exponent)
+    }
+
+    /// The value from the lobe, which channels share.
+    fn with_lobe(&self, wi: DVec3, lobe: f64) -> f64 {
         let Self { diffuse, specular, exponent } = *self;
-        let lobe = lobe(DVec3::new(-wi.x, -wi.y, wi.z), wo, exponent);
         FRAC_1_PI * diffuse * wi.z + specular * (exponent + 1.0) / (2.0 * PI) * lobe
     }
 }

@@ -152,7 +152,7 @@ impl Model for WeidlichWilkie {
     }
 
     fn eval(&self, stack: &Monochrome, wi: DVec3, wo: DVec3) -> f64 {
-        let [value] = walk(self, &Layers::from(stack).layers, stack, wi, wo, Tilts::NONE).value();
+        let [value] = walk(self, &Layers::from(stack).layers, stack, wi, wo, Tilts::NONE, false).value();
         value
     }
 }

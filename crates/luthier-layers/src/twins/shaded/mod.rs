@@ -211,6 +211,13 @@ impl Shaded {
         Self::exact(fit, model, stack, wavelengths_nm, color, place, Parts::PLAIN)
     }
 
+    /// [`Self::eval`] of [`frame::each_pair`], three values each. It is not generic, so that the loop is compiled as this crate is, and not as its caller.
+    pub fn eval_pairs(&self, wi: &[[f64; 3]], wo: &[[f64; 3]], values: &mut [f64]) {
+        for ([wi, wo], row) in frame::each_pair(wi, wo).zip(values.chunks_exact_mut(3)) {
+            row.copy_from_slice(&self.eval(wi, wo));
+        }
+    }
+
     fn exact(
         fit: &Fit<'_>,
         model: ShadingModel,
@@ -346,7 +353,8 @@ impl<T: ShaderTerms> Shaded<T> {
     }
 
     fn eval_unmixed(&self, wi: DVec3, wo: DVec3) -> Rgb {
-        let [wi_here, wo_here] = [wi, wo].map(|w| frame::local(self.place.sample.normal, w));
+        let normal = self.place.sample.normal;
+        let [wi_here, wo_here] = [wi, wo].map(|w| if normal == DVec3::Z { w } else { frame::local(normal, w) });
         if [wi, wo, wi_here, wo_here].iter().any(|w| w.z <= 0.0) {
             return [0.0; 3];
         }

@@ -1,29 +1,39 @@
-//! Live numbers of a material on the command line: `--live layer.1.base_color=0.8,0.3,0.1`.
+//! Live numbers of a material at a place.
 
-use glam::{DVec2, DVec3};
 use luthier_layers::effects::layer_sample::LayerSample;
+use luthier_layers::glam::{DVec2, DVec3};
 use luthier_layers::twins::shaded::Place;
 use luthier_manifest::{Form, LiveEntry, LiveRange, MapSlot, ShadingModel};
 use luthier_material::{Material, left_out};
 use luthier_optics::Rgb;
-use luthier_terminal::{Failure, Outcome};
 
-use crate::model_inputs::LiveValue;
+use super::Refusal;
+
+/// A live number, and the value that it gets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LiveValue {
+    /// The layer, from the top.
+    pub layer: usize,
+    /// The key in the layer.
+    pub name: String,
+    /// The numbers.
+    pub values: Vec<f64>,
+}
 
 /// A layer with its edge tint, and its base colour and metal at a place.
-pub(crate) type Metallic = Option<(usize, Rgb, Rgb, f64)>;
+pub(super) type Metallic = Option<(usize, Rgb, Rgb, f64)>;
 
 /// Gives a place the values of live numbers, and base colour and metal those of a layer that has them live.
 ///
 /// # Errors
 /// A number that the file does not have live, that the model does not show, or that is out of its range.
-pub(crate) fn set(
+pub(super) fn set(
     place: &mut Place,
     metallic: &mut Metallic,
     material: &Material,
     model: Option<ShadingModel>,
     given: &[LiveValue],
-) -> Outcome {
+) -> Result<(), Refusal> {
     let known = luthier_bake::live_numbers(material);
     for live in known.iter().filter(|live| matches!(live.slot, MapSlot::BaseColor | MapSlot::Metallic)) {
         let surface = material.layers[live.layer as usize].metallic;
@@ -87,7 +97,7 @@ pub(crate) fn set(
 }
 
 /// The live factor on the weight of a coat.
-pub(crate) fn weight_factor(given: &[LiveValue]) -> f64 {
+pub(super) fn weight_factor(given: &[LiveValue]) -> f64 {
     given.iter().filter(|live| live.layer == 0 && live.name == "weight").map(|live| live.values[0]).product()
 }
 
@@ -96,6 +106,6 @@ fn unit(values: &[f64]) -> DVec3 {
     DVec3::new(values[0], values[1], values[2].max(1e-3)).normalize()
 }
 
-fn usage<T>(text: String) -> Outcome<T> {
-    Err(Failure::Usage(anyhow::anyhow!("--live: {text}")))
+fn usage<T>(text: String) -> Result<T, Refusal> {
+    Err(Refusal::Live(text))
 }

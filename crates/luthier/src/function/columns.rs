@@ -1,11 +1,12 @@
 //! The function that is evaluated, in the columns that are asked for.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
-use glam::DVec3;
-use luthier::refusals::parts_of;
 use luthier_layers::directional_albedo::over_hemisphere;
-use luthier_layers::model::{Estimate, Estimator, Model};
+use luthier_layers::frame::each_pair;
+use luthier_layers::glam::DVec3;
+use luthier_layers::model::{Estimate, Estimator};
 use luthier_layers::models::parts::Parts;
 use luthier_layers::monochrome::Monochrome;
 use luthier_layers::twins::shaded::{Shaded, at_wavelength};
@@ -15,52 +16,32 @@ use luthier_model::Family;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::Stack;
-use serde_json::{Value, json};
 
 use super::{Subject, nearest_channel};
-use crate::cli::EvalOptions;
+use crate::refusals::parts_of;
 
 /// Meaning of the numbers of a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Kind {
+pub enum Kind {
+    /// Light of one wavelength, in nm.
     Wavelength(f64),
     /// Light of one wavelength seen at another.
     Reradiated([f64; 2]),
+    /// Linear Rec.709.
     Color(Color),
 }
 
 impl Kind {
-    /// The kind that the command line asks for; `None` where it asks for nothing particular.
-    pub(crate) fn asked(options: &EvalOptions, subject: &Subject) -> Option<Self> {
-        match (subject.bins_nm, options.wavelength) {
-            (Some(bins_nm), _) => Some(Self::Reradiated(bins_nm)),
-            (None, Some(nm)) => Some(Self::Wavelength(nm)),
-            (None, None) if options.three_wavelengths => {
-                Some(Self::Color(Color::ThreeWavelengths(subject.material.bake.wavelengths_nm())))
-            }
-            (None, None) => options.rgb.then_some(Self::Color(Color::Spectral)),
-        }
-    }
-
     /// Names of the columns, the only one by `single`.
-    pub(crate) fn columns(&self, single: &'static str) -> Vec<&'static str> {
+    pub fn columns(&self, single: &'static str) -> Vec<&'static str> {
         match self {
             Self::Wavelength(_) | Self::Reradiated(_) => vec![single],
             Self::Color(_) => vec!["r", "g", "b"],
         }
     }
 
-    pub(crate) fn describe(&self) -> Value {
-        match self {
-            Self::Wavelength(nm) => json!({"wavelength_nm": nm}),
-            Self::Reradiated([light, seen]) => json!({"excitation_nm": light, "wavelength_nm": seen}),
-            Self::Color(Color::Spectral) => json!("spectral"),
-            Self::Color(Color::ThreeWavelengths(nm)) => json!({"three_wavelengths_nm": nm}),
-        }
-    }
-
     /// The monochrome stacks whose sums are the columns, each with its weight in each column. Equal stacks are merged.
-    pub(crate) fn parts(&self, stack: &Stack) -> Vec<(Monochrome, Rgb)> {
+    pub fn parts(&self, stack: &Stack) -> Vec<(Monochrome, Rgb)> {
         let color = match self {
             Self::Wavelength(nm) | Self::Reradiated([_, nm]) => {
                 return vec![(Monochrome::new(stack, *nm, nearest_channel(*nm)), [1.0, 0.0, 0.0])];
@@ -83,15 +64,17 @@ impl Kind {
 }
 
 /// A directional albedo in the columns.
-pub(crate) struct Albedo {
-    pub(crate) values: Vec<Estimate>,
+#[derive(Debug, Clone)]
+pub struct Albedo {
+    /// One value per column.
+    pub values: Vec<Estimate>,
     /// Change of a quadrature on the last doubling of its points.
-    pub(crate) changes: Option<Vec<f64>>,
+    pub changes: Option<Vec<f64>>,
 }
 
 impl Albedo {
     /// The albedo of a surface of which a share has this one, and the rest another.
-    pub(super) fn over(self, share: f64, bare: Self) -> Self {
+    pub fn over(self, share: f64, bare: Self) -> Self {
         let changes = self.changes.zip(bare.changes).map(|(covered, bare)| {
             covered.iter().zip(bare).map(|(covered, bare)| share * covered + (1.0 - share) * bare).collect()
         });
@@ -99,14 +82,13 @@ impl Albedo {
     }
 }
 
-/// The function of two directions.
-pub(crate) struct Function<'a> {
-    model: &'a dyn Model,
+/// The function of two directions: `f cos_theta_i` of a subject.
+pub struct Function {
+    subject: Arc<Subject>,
     columns: usize,
-    normal: DVec3,
     how: How,
     /// The share that the first layer covers, and the function where it is not, of a model without a shader.
-    bare: Option<(f64, Box<Function<'a>>)>,
+    bare: Option<(f64, Box<Function>)>,
 }
 
 enum How {
@@ -118,8 +100,9 @@ enum How {
     Own(Box<[(f64, Monochrome); 3]>),
 }
 
-impl<'a> Function<'a> {
-    pub(crate) fn new(subject: &'a Subject, kind: &Kind) -> Self {
+impl Function {
+    /// The function of a subject, with values of a kind.
+    pub fn new(subject: &Arc<Subject>, kind: &Kind) -> Self {
         let material = &subject.material;
         let shading = subject.model.info().shading();
         let stack = shading.map_or(Cow::Borrowed(&material.stack), |model| material.stack_of(model));
@@ -129,7 +112,7 @@ impl<'a> Function<'a> {
         Self { bare, ..whole }
     }
 
-    fn of(subject: &'a Subject, stack: &Stack, kind: &Kind) -> Self {
+    fn of(subject: &Arc<Subject>, stack: &Stack, kind: &Kind) -> Self {
         let (model, material) = (subject.model.as_ref(), &subject.material);
         let wavelengths_nm = material.bake.wavelengths_nm();
         let how = shaded(subject, kind).unwrap_or_else(|| {
@@ -141,16 +124,25 @@ impl<'a> Function<'a> {
                 *kind == Kind::Color(Color::Spectral) && model.eval_rgb(&channels, DVec3::Z, DVec3::Z).is_some();
             if is_own { How::Own(Box::new(channels)) } else { How::Sum(kind.parts(stack)) }
         });
-        Self { model, columns: kind.columns("").len(), normal: subject.place.sample.normal, how, bare: None }
+        Self { subject: Arc::clone(subject), columns: kind.columns("").len(), how, bare: None }
+    }
+
+    /// Number of columns: 1, or 3 of a colour.
+    pub fn columns(&self) -> usize {
+        self.columns
     }
 
     /// Whether values are means of random samples.
-    pub(crate) fn estimator(&self) -> Option<&dyn Estimator> {
-        self.model.estimator().filter(|_| matches!(self.how, How::Sum(_)))
+    pub fn is_estimate(&self) -> bool {
+        self.estimator().is_some()
+    }
+
+    fn estimator(&self) -> Option<&dyn Estimator> {
+        self.subject.model.estimator().filter(|_| matches!(self.how, How::Sum(_)))
     }
 
     /// One estimate per column.
-    pub(crate) fn values(&self, wi: DVec3, wo: DVec3) -> Vec<Estimate> {
+    pub fn values(&self, wi: DVec3, wo: DVec3) -> Vec<Estimate> {
         let found = self.covered(wi, wo);
         let Some((weight, bare)) = &self.bare else { return found };
         blended(*weight, found, bare.values(wi, wo))
@@ -164,7 +156,7 @@ impl<'a> Function<'a> {
     }
 
     /// The share of the light from each direction above the surface that `wo` sees.
-    pub(crate) fn albedo(&self, wo: DVec3) -> Albedo {
+    pub fn albedo(&self, wo: DVec3) -> Albedo {
         if let (How::Sum(parts), Some(estimator)) = (&self.how, self.estimator()) {
             let values = self.summed(parts, |stack| estimator.albedo_with_error(stack, wo, DVec3::Z));
             let values = match &self.bare {
@@ -176,7 +168,8 @@ impl<'a> Function<'a> {
         if wo.z <= 0.0 {
             return Albedo { values: vec![Estimate::exact(0.0); self.columns], changes: Some(vec![0.0; self.columns]) };
         }
-        let mirrored = 2.0 * self.normal.dot(wo) * self.normal - wo;
+        let normal = self.subject.place.sample.normal;
+        let mirrored = 2.0 * normal.dot(wo) * normal - wo;
         let (values, changes) = over_hemisphere(mirrored, |wi| self.eval(wi, wo));
         let values = values[..self.columns].iter().map(|&value| Estimate::exact(value)).collect();
         Albedo { values, changes: Some(changes[..self.columns].to_vec()) }
@@ -187,6 +180,16 @@ impl<'a> Function<'a> {
         let columns = (0..self.columns)
             .map(|c| Estimate::sum(parts.iter().zip(&found).map(|((_, weight), one)| (weight[c], *one))));
         columns.collect()
+    }
+
+    /// The values of many pairs, row by row, see [`each_pair`]: those of [`Self::values`], without their errors.
+    pub fn eval_pairs(&self, wi: &[[f64; 3]], wo: &[[f64; 3]], values: &mut [f64]) {
+        if let (How::Shader(shaded, _), 3, None) = (&self.how, self.columns, &self.bare) {
+            return shaded.eval_pairs(wi, wo, values);
+        }
+        each_pair(wi, wo).zip(values.chunks_exact_mut(self.columns)).for_each(|([wi, wo], row)| {
+            row.copy_from_slice(&self.eval(wi, wo)[..self.columns]);
+        });
     }
 
     /// The values of a model that is a function. A single column takes the first channel.
@@ -201,11 +204,11 @@ impl<'a> Function<'a> {
         match &self.how {
             How::Shader(shaded, channel) if self.columns == 1 => [shaded.eval(wi, wo)[*channel], 0.0, 0.0],
             How::Shader(shaded, _) => shaded.eval(wi, wo),
-            How::Own(channels) => self.model.eval_rgb(channels, wi, wo).unwrap_or([0.0; 3]),
+            How::Own(channels) => self.subject.model.eval_rgb(channels, wi, wo).unwrap_or([0.0; 3]),
             How::Sum(parts) => {
                 let mut sum = [0.0; 3];
                 for (stack, weight) in parts {
-                    let value = self.model.eval(stack, wi, wo);
+                    let value = self.subject.model.eval(stack, wi, wo);
                     (0..3).for_each(|c| sum[c] += weight[c] * value);
                 }
                 sum
@@ -221,7 +224,7 @@ fn blended(weight: f64, covered: Vec<Estimate>, bare: Vec<Estimate>) -> Vec<Esti
 }
 
 /// The parts that the file chooses, as far as the evaluated model has them.
-pub(super) fn parts(subject: &Subject) -> (Parts, Reflectance) {
+pub fn parts(subject: &Subject) -> (Parts, Reflectance) {
     let Some(model) = subject.model.info().shading() else {
         return (Parts::PLAIN, Reflectance::default());
     };

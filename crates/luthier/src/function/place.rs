@@ -1,11 +1,11 @@
-//! The place of a surface where a model is evaluated, from the options and from the effects of the material file.
+//! The place of a surface where a model is evaluated, from inputs and from the effects of the material file.
 
-use glam::{DVec2, DVec3};
 use luthier_bake::{MapSource, height_normals};
 use luthier_layers::effects::flakes::Flakes;
 use luthier_layers::effects::heterogeneous::Map;
 use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::effects::patina::Patina;
+use luthier_layers::glam::{DVec2, DVec3};
 use luthier_layers::models::lobes::Mix;
 use luthier_layers::noise::voronoi::Voronoi;
 use luthier_layers::twins::shaded::{Growth, Place, index_of_engine};
@@ -15,20 +15,19 @@ use luthier_material::{Effects, FlakeSource, Glitter, Material, PictureRef, Texe
 use luthier_optics::Rgb;
 use luthier_optics::schlick::{DIELECTRIC_F0, DIELECTRIC_INDEX, F82};
 use luthier_optics::stack::Base;
-use luthier_terminal::{Failure, Outcome};
 
-use super::live;
-use crate::model_inputs::{LayerMap, ModelInputs};
+use super::{Inputs, LayerMap, Refusal, live};
+use crate::read_picture;
 
 /// The place; `shows` are the effects that count.
-pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) -> Outcome<Place> {
-    let uv = inputs.uv().unwrap_or(DVec2::ZERO);
-    let (base_color, reradiation) = (inputs.base_color(), material.reradiation());
+pub(super) fn place(material: &Material, inputs: &Inputs, shows: &Effects) -> Result<Place, Refusal> {
+    let uv = inputs.uv.unwrap_or(DVec2::ZERO);
+    let (base_color, reradiation) = (inputs.base_color, material.reradiation());
     let mut place = Place { sample: inputs.sample(), base_color, reradiation, ..Place::NONE };
-    if let Some(normal) = inputs.inner_normal() {
+    if let Some(normal) = inputs.inner_normal {
         place.under.inner_normal = normal;
     }
-    if let (Some(glitter), false) = (&shows.glitter, inputs.has_normal()) {
+    if let (Some(glitter), false) = (&shows.glitter, inputs.normal.is_some()) {
         place.sample.normal = particle(glitter, uv);
     }
     if let Some(flakes) = &shows.flakes {
@@ -72,28 +71,28 @@ pub(crate) fn place(material: &Material, inputs: &ModelInputs, shows: &Effects) 
 }
 
 /// The share of the surface that the first layer covers at the place, if it is a coat with a weight.
-pub(crate) fn weight(material: &Material, inputs: &ModelInputs) -> Outcome<Option<f64>> {
+pub(super) fn weight(material: &Material, inputs: &Inputs) -> Result<Option<f64>, Refusal> {
     let Some(weight) = material.weight() else { return Ok(None) };
     let texel = match inputs.weight_map(material) {
         Some(named) => {
             let image = picture(material, named, TexelUse::Number)?.channel(0);
-            filtered(&image, moved(named, inputs.uv().unwrap_or(DVec2::ZERO)))
+            filtered(&image, moved(named, inputs.uv.unwrap_or(DVec2::ZERO)))
         }
         None => 1.0,
     };
-    let factor = inputs.weight_factor() * live::weight_factor(&inputs.live);
+    let factor = inputs.weight_factor.unwrap_or(1.0) * live::weight_factor(&inputs.live);
     Ok(Some((weight * texel * factor).clamp(0.0, 1.0)))
 }
 
 /// Gives the place the values of layer textures: those of `maps`, which include the albedo of the base.
-pub(crate) fn add_layers(
+pub(super) fn add_layers(
     place: &mut Place,
     material: &Material,
     model: Option<ShadingModel>,
-    inputs: &ModelInputs,
+    inputs: &Inputs,
     maps: &[LayerMap],
-) -> Outcome {
-    let uv = inputs.uv().unwrap_or(DVec2::ZERO);
+) -> Result<(), Refusal> {
+    let uv = inputs.uv.unwrap_or(DVec2::ZERO);
     let count = maps.iter().map(|map| map.layer + 1).max().unwrap_or(0);
     let mut layers = vec![LayerSample::NONE; count];
     let mut metallic: Option<(usize, Rgb, Rgb, f64)> = None;
@@ -179,9 +178,9 @@ fn particle(&Glitter { seed, frequency, filled, tilt }: &Glitter, uv: DVec2) -> 
     Map::Glitter { cells, stacks: vec![0], filled, tilt, under: Box::new(Map::Uniform(0)) }.pick(uv).normal
 }
 
-fn picture(material: &Material, named: &PictureRef, texels: TexelUse) -> Outcome<Picture> {
-    luthier::read_picture(&material.source, named, texels)
-        .map_err(|reason| Failure::Input(anyhow::anyhow!("{}: {}: {reason}", material.source, named.path)))
+fn picture(material: &Material, named: &PictureRef, texels: TexelUse) -> Result<Picture, Refusal> {
+    read_picture(&material.source, named, texels)
+        .map_err(|reason| Refusal::File(format!("{}: {}: {reason}", material.source, named.path)))
 }
 
 /// Texture coordinates of a picture.
