@@ -191,7 +191,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         ("docs/pages/nightly.md", &[]),
         ("docs/proof.md", &["book"]),
         ("docs/measurements/stability.json", &["book", "tests"]),
-        ("materials/gold.toml", &["examples", "farm", "fuzz", "gpu", "random", "release", "tests"]),
+        ("materials/gold.toml", &["examples", "farm", "fuzz", "gpu", "python", "random", "release", "tests"]),
         ("examples/wgpu/main.rs", &["examples"]),
         ("examples/farm/job", &["examples", "farm"]),
         ("tests/crash/kill.c", &["crash"]),
@@ -219,6 +219,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
                 "installed",
                 "packages",
                 "promises",
+                "python",
                 "release",
                 "scale",
                 "tests",
@@ -227,7 +228,19 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         ("crates/luthier-fuzz/corpus/a", &["fuzz", "installed", "packages", "promises"]),
         (
             "crates/luthier-gallery/src/lib.rs",
-            &["crash", "examples", "farm", "gpu", "kind", "installed", "packages", "promises", "release", "scale"],
+            &[
+                "crash",
+                "examples",
+                "farm",
+                "gpu",
+                "kind",
+                "installed",
+                "packages",
+                "promises",
+                "python",
+                "release",
+                "scale",
+            ],
         ),
     ];
     for (file, expected) in cases {

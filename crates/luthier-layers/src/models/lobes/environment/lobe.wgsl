@@ -32,7 +32,7 @@ struct LuthierShownPlace {
     above: f32,
     /// Angles outside over slopes.
     stretch: vec2<f32>,
-    /// What facets of the first interface reflect there, over the density of their slopes; 1 in lobes from below.
+    /// Light that facets of the first interface reflect in a direction, over the density of their slopes; 1 in lobes from below.
     weight: vec3<f32>,
 }
 

@@ -37,7 +37,7 @@ fn luthier_turned_spread(lobe: LuthierShownLobe) -> vec3<f32> {
     return vec3<f32>(along, sqrt(max(left.y - between * between, 0.0)), between);
 }
 //? else
-/// What the blurs leave of the widths, within which directions lie.
+/// Widths less those of the blurs: within these the directions lie.
 fn luthier_turned_spread(lobe: LuthierShownLobe) -> vec3<f32> {
     let angles = lobe.width * lobe.stretch;
     let blur = luthier_shown_blur(lobe, lobe.stretch);
