@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tests of the Python module crates/luthier-python.
 #   scripts/python.sh [TEST...]   lays the package out beside the extension module that cargo has built, and runs crates/luthier-python/tests, or some
-#                                 (test_arrays, test_physics.Draws), with NumPy alone. Takes the command from LUTHIER, the module from beside it. `cargo test`
+#                                 (test_arrays, test_physics.Draws), with NumPy alone. Takes the command from LUTHIER, the module from beside it or deps. `cargo test`
 #                                 calls it (tests/python.rs). Exits with 3 where no Python has NumPy
 #   scripts/python.sh --install   makes a wheel, installs it in a new virtual environment, and runs there the tests, the notebook, the examples and bench.py.
 #                                 From PyPI: maturin, numpy, matplotlib, nbclient, ipykernel. The wheel stays in target/wheels/
@@ -32,10 +32,11 @@ if [ "${1-}" = --install ]; then
 fi
 
 export LUTHIER=${LUTHIER:-$PWD/target/debug/luthier}
-for name in lib_luthier.so lib_luthier.dylib; do
+# `cargo test` leaves the module in `deps`; `cargo build` also beside the command.
+for name in lib_luthier.so lib_luthier.dylib deps/lib_luthier.so deps/lib_luthier.dylib; do
   [ ! -e "$(dirname "$LUTHIER")/$name" ] || built=$(dirname "$LUTHIER")/$name
 done
-[ -n "${built-}" ] || { echo "error: no extension module beside $LUTHIER; build the workspace first"; exit 1; }
+[ -n "${built-}" ] || { echo "error: no extension module beside $LUTHIER or in deps; build the workspace first"; exit 1; }
 # The python3 that is found first may be one without NumPy, beside a system that has it.
 for python in python3 /usr/bin/python3 none; do
   ! "$python" -c 'import numpy' 2>/dev/null || break
