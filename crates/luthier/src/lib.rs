@@ -188,11 +188,11 @@ pub use luthier_manifest::Form;
 /// use luthier::{Bake, Form, FunctionGroup, MemoryStore};
 ///
 /// let text = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
-/// let functions = [FunctionGroup::Albedo, FunctionGroup::Environment8].into_iter().collect();
+/// let functions = [FunctionGroup::Albedo, FunctionGroup::Environment4].into_iter().collect();
 /// let bake = Bake { functions, ..Bake::wgsl(&[Form::Full]) };
 /// let package = bake.package(&[luthier::parse("chalk.toml", text)?], &MemoryStore::default())?;
 /// assert!(package.wgsl(Form::Full)?.contains("fn luthier_albedo("));
-/// assert_eq!(FunctionGroup::Environment8.environment_reads(), Some(8));
+/// assert_eq!(FunctionGroup::Environment4.environment_reads(), Some(4));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[doc(inline)]

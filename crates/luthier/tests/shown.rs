@@ -46,6 +46,26 @@ const REASONS: &[(&str, &[&str])] = &[
             "ShadingModel::takes_masking",
         ],
     ),
+    (
+        "inputs and values of a function, which the example of the module `function` makes; the command and the Python module set the others",
+        &[
+            "Albedo",
+            "Albedo::over",
+            "Color::sparse_nodes",
+            "Inputs",
+            "Inputs::layer_maps",
+            "Inputs::not_taken",
+            "Inputs::shown",
+            "Inputs::weight_map",
+            "Kind",
+            "Kind::columns",
+            "Kind::parts",
+            "LayerMap",
+            "LiveValue",
+            "parts",
+            "textured",
+        ],
+    ),
     ("a bake makes it; programs read it", &["Manifest::new", "Manifest::files_mut", "Package::from_parts"]),
     ("has a default that does nothing, and `examples/editor.rs` shows it", &["Observer::found"]),
     ("has a default that calls `get`, for stores that are far away", &["Store::get_all", "Store::touch"]),
@@ -170,11 +190,13 @@ fn items() -> Docs {
     texts("luthier").iter().for_each(|text| read(text, &mut own));
     let root = fs::read_to_string(crates().join("luthier/src/lib.rs")).unwrap();
     let refusals = fs::read_to_string(crates().join("luthier/src/refusals/mod.rs")).unwrap();
-    assert_eq!(root.lines().filter(|line| line.starts_with("pub mod ")).collect::<Vec<_>>(), ["pub mod refusals;"]);
+    let function = fs::read_to_string(crates().join("luthier/src/function/mod.rs")).unwrap();
+    let modules: Vec<&str> = root.lines().filter(|line| line.starts_with("pub mod ")).collect();
+    assert_eq!(modules, ["pub mod function;", "pub mod refusals;"]);
 
     let mut all = Docs::new();
-    for (path, names, docs) in [uses(&root), uses(&refusals)].concat() {
-        let lower = path.replace('_', "-");
+    for (path, names, docs) in [uses(&root), uses(&refusals), uses(&function)].concat() {
+        let lower = path.split("::").next().unwrap_or_default().replace('_', "-");
         let mut known = Docs::new();
         if lower.starts_with("luthier-") {
             let homes = std::iter::once(lower.as_str()).chain(LOWER);

@@ -83,6 +83,26 @@ impl Albedo {
 }
 
 /// The function of two directions: `f cos_theta_i` of a subject.
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use luthier::function::{Color, Function, Inputs, Kind, Subject};
+/// # use luthier_layers::glam::DVec3;
+/// # let text = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+/// # let chalk = luthier::parse("chalk.toml", text)?;
+/// # let model = luthier_layers::registry::model("elek").ok_or("no such model")?;
+/// # let fit = Arc::new(luthier_layers::models::lobes::Varied::of);
+/// # let subject = Arc::new(Subject::new(model, chalk, None, fit, &Inputs::default(), None)?);
+/// let function = Function::new(&subject, &Kind::Color(Color::Spectral));
+/// assert!(function.columns() == 3 && !function.is_estimate());
+/// let lambert = 0.8 / std::f64::consts::PI;
+/// assert!((function.values(DVec3::Z, DVec3::Z)[0].mean - lambert).abs() < 1e-4);
+/// assert!((function.albedo(DVec3::Z).values[0].mean - 0.8).abs() < 1e-3);
+/// let mut values = [0.0; 3];
+/// function.eval_pairs(&[[0.0, 0.0, 1.0]], &[[0.0, 0.6, 0.8]], &mut values);
+/// assert!((values[0] - lambert).abs() < 1e-4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Function {
     subject: Arc<Subject>,
     columns: usize,

@@ -17,6 +17,21 @@ const COSINE: f64 = 0.1;
 
 /// Draws of light for a subject: the layers as `wo` sees them (Weidlich and Wilkie 2009, eq. 3.6), mixed with a cosine. Every model of a material has the
 /// same draws, so that two models can be compared at the same directions.
+///
+/// ```
+/// # use std::sync::Arc;
+/// # use luthier::function::{Draws, Inputs, Subject};
+/// # use luthier_layers::glam::DVec3;
+/// # let text = "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n";
+/// # let chalk = luthier::parse("chalk.toml", text)?;
+/// # let model = luthier_layers::registry::model("elek").ok_or("no such model")?;
+/// # let fit = Arc::new(luthier_layers::models::lobes::Varied::of);
+/// # let subject = Subject::new(model, chalk, None, fit, &Inputs::default(), None)?;
+/// let draws = Draws::new(&subject);
+/// let (wi, pdf) = draws.sample(DVec3::Z, [0.5, 0.3, 0.7]).ok_or("below the horizon")?;
+/// assert!((draws.pdf_solid_angle(wi, DVec3::Z) - pdf).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Draws {
     stack: Monochrome,

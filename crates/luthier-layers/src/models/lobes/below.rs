@@ -163,13 +163,6 @@ impl Below {
         self
     }
 
-    /// The light without a part of the remainder, RGB.
-    #[must_use]
-    pub(super) fn without(mut self, wide: Rgb) -> Self {
-        self.row.wide.iter_mut().zip(wide).for_each(|(own, less)| *own -= less);
-        self
-    }
-
     /// The row of the view.
     pub fn row(&self) -> &Row {
         &self.row

@@ -324,12 +324,11 @@ mod tests {
         let stack = Stack { exterior: Ior::vacuum(), layers: vec![layer(0.115, coat), layer(0.157, metal)] };
         let simulation = Simulation::new(&stack, &COLOR, FitSettings::default());
         let judge = Judge::new(&stack, &COLOR, None);
-        let [inside, nearest] = [simulation.in_cells(1), simulation].map(|light| light.fit(LOBES));
+        let inside = simulation.in_cells(1).fit(LOBES);
         let view = &judge.views[0];
         let [outside, own] = [0, 1]
             .map(|medium: usize| judge.error_in(&view.counted[medium], view, &inside.below(view.wo).unwrap()).lobe);
         assert!(own < 0.02 && outside > 0.04, "{own} {outside}");
-        let error = judge.error_of(|_| nearest.clone()).lobe;
-        assert!(nearest.frame.index < 1.1 && error < 0.02, "{error}");
+        assert!(judge.error_of(|_| inside.clone()).lobe > 0.04);
     }
 }

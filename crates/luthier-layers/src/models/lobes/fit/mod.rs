@@ -15,7 +15,7 @@ use luthier_optics::stack::{Base, Diffuse, Stack, Surface};
 
 use super::ellipse::{Numbers, Plane, logarithm};
 use super::parameters::{Basis, NODES, Start, parameters};
-use super::tally::{Cells, Tally, mean};
+use super::tally::{Cells, Tally};
 use super::{Axes, Critical, FirstInterface, Lobes, Painted, Row, ViewAxis, Wide, base_below};
 use crate::formulas::facets::ALPHA_MIN;
 use crate::least_squares::{LeastSquares, Place};
@@ -60,9 +60,6 @@ const SEARCH: LeastSquares = LeastSquares { longest: 0.7, gain: 1e-4 };
 /// Steps from every start, and further ones from the places that were best after these.
 const FIRST_STEPS: u32 = 6;
 const LAST_STEPS: u32 = 20;
-
-/// Share of the light by which a fit in the half vectors of another medium has to be nearer: above the noise of the paths, and errors of few points of a cell.
-const BLIND: f64 = 0.02;
 
 /// Places that are followed to the end.
 const FOLLOWED: usize = 2;
@@ -365,34 +362,18 @@ impl Simulation {
         (0..self.cells.len()).map(|set| Problem::coarse(self, set)).collect()
     }
 
-    /// Fits without a lobe, with one, and so on, until another lobe gains nothing: in the half vectors of the medium in which one lobe is the nearest.
-    ///
-    /// Every medium has cells of its own, which are blind elsewhere: at flat views all light of a steep medium is in a few of them. So a medium gives way
-    /// to another whose last fit is nearer to the light in the cells of all media by more than [`BLIND`].
+    /// Fits without a lobe, with one, and so on, until another lobe gains nothing.
     fn fits(&self, problems: &[Problem<'_>], most: usize) -> Vec<Found> {
-        let sets = if most > 0 { problems.len() } else { 1 };
-        let mut by_set: Vec<Vec<Found>> = (0..sets).map(|set| self.fits_in(set, problems, most)).collect();
-        let least = |of: &dyn Fn(usize) -> f64| (0..sets).min_by(|a, b| of(*a).total_cmp(&of(*b))).unwrap_or(0);
-        let usual = least(&|set| by_set[set].get(1).map_or(0.0, |one| one.place.cost));
-        let apart: Vec<f64> = match sets {
-            1 => vec![0.0],
-            _ => by_set.iter().map(|fits| fits.last().map_or(f64::INFINITY, |found| self.apart(found))).collect(),
-        };
-        let nearest = least(&|set| apart[set]);
-        by_set.swap_remove(if apart[usual] > apart[nearest] + BLIND { nearest } else { usual })
-    }
-
-    /// [`Self::fits`] in one set of cells.
-    fn fits_in(&self, set: usize, problems: &[Problem<'_>], most: usize) -> Vec<Found> {
         let (basis, falloff) = (self.basis(), self.base_falloff.unwrap_or(REMAINDER_START));
-        let mut fits = vec![nearest(problems, vec![(set, Vec::new(), falloff)])];
-        if most > 0 {
-            let alone = self
-                .starts
-                .iter()
-                .flat_map(|&shape| TAIL_STARTS.map(|tail| (set, vec![Start::new(basis, shape, tail)], falloff)));
-            fits.push(nearest(problems, alone.collect()));
+        let mut alone = Vec::new();
+        for (set, &shape) in (0..problems.len()).flat_map(|set| self.starts.iter().map(move |shape| (set, shape))) {
+            alone.extend(TAIL_STARTS.map(|tail| (set, vec![Start::new(basis, shape, tail)], falloff)));
         }
+        let one = (most > 0).then(|| nearest(problems, alone));
+        // The fit without lobes uses the cells of the others, so that residuals compare.
+        let set = one.as_ref().map_or(0, |one| one.set);
+        let mut fits = vec![nearest(problems, vec![(set, Vec::new(), falloff)])];
+        fits.extend(one);
         // Each round adds a lobe to the last fit: its last lobe made wider or narrower, or an interface's.
         for count in 1..most {
             let fewer = &fits[count];
@@ -414,26 +395,6 @@ impl Simulation {
             fits.push(more);
         }
         fits
-    }
-
-    /// Share of the light that the lobes of a place send to wrong cells: the largest of all media and views. The noise of the paths is in it.
-    fn apart(&self, found: &Found) -> f64 {
-        let (lobes, numbers) = (self.lobes(found), self.numbers());
-        let mut most: f64 = 0.0;
-        for (number, (azimuth, row)) in numbers.all().enumerate() {
-            let at = seen_from(self.seen, numbers.azimuth(azimuth), row);
-            let outward = |w| self.axes.map_or(w, |axes| axes.outside(w));
-            let Some(below) = lobes.below(outward(at)) else { continue };
-            let tally = &self.views[number];
-            let below = below.without(tally.of_lambertian());
-            let all = [tally.total, tally.first_facet, tally.of_lambertian()].map(mean).iter().sum::<f64>();
-            for (cells, rest) in self.cells.iter().zip(&tally.rest) {
-                let light = cells.light(at, |wi| below.eval(outward(wi)));
-                let differences = light.iter().zip(rest).map(|(light, rest)| (mean(*light) - mean(*rest)).abs());
-                most = most.max(0.5 * differences.sum::<f64>() / all.max(f64::MIN_POSITIVE));
-            }
-        }
-        most
     }
 }
 
