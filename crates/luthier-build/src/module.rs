@@ -78,9 +78,15 @@ fn constants(prefix: &str, numbers: &[(String, usize, &String, &String)]) -> Str
 fn module(text: &mut String, about: &str, name: &str, inside: &str) {
     let indented = |line: &str| if line.is_empty() { "\n".to_owned() } else { format!("    {line}\n") };
     let inside: String = inside.trim_start().lines().map(indented).collect();
-    let _ = write!(text, "\n/// {about}\n#[allow(dead_code)]\npub mod {name} {{\n{inside}}}\n");
+    let _ = write!(
+        text,
+        "\n/// {about}\n#[allow(dead_code, reason = \"a program takes what it needs\")]\npub mod {name} {{\n{inside}}}\n"
+    );
 }
 
 fn item(text: &mut String, about: &str, name: &str, kind: &str, value: &str) {
-    let _ = write!(text, "\n/// {about}\n#[allow(dead_code)]\npub const {name}: {kind} = {value};\n");
+    let _ = write!(
+        text,
+        "\n/// {about}\n#[allow(dead_code, reason = \"a program takes what it needs\")]\npub const {name}: {kind} = {value};\n"
+    );
 }
