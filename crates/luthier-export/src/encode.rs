@@ -75,8 +75,11 @@ impl Package {
                 *file = files.add(format!("tables/{}.{}", kind.name(), part.extension()), bytes?);
             }
         }
+        // Materials that have one picture share its file.
+        let mut shared: BTreeMap<&[u8], FileEntry> = BTreeMap::new();
         for (entry, map) in manifest.materials.iter_mut().flat_map(|m| &mut m.maps).zip(&self.maps) {
-            entry.file = files.add(entry.file.path.clone(), map.png.clone());
+            let file = shared.entry(map.png.as_slice());
+            entry.file = file.or_insert_with(|| files.add(entry.file.path.clone(), map.png.clone())).clone();
         }
         let mut words = material_buffer(&manifest.materials);
         words.resize(manifest.material_texture.words(), [0.0; 4]);

@@ -1,7 +1,9 @@
 //! A package: the result of a bake, in memory.
 
+use std::borrow::Cow;
+
 use luthier_lut::{Image, Picture, TableKind};
-use luthier_manifest::{Check, Form, Interface, Manifest, MapSlot, MaterialEntry, Target};
+use luthier_manifest::{Check, Form, Interface, Manifest, MapSlot, MaterialEntry, Names, Target};
 use luthier_texture::Texture;
 
 use crate::PackageError;
@@ -177,6 +179,24 @@ impl Package {
             form,
             known: texts.iter().map(|s| s.form.name()).collect::<Vec<_>>().join(", "),
         })
+    }
+
+    /// The package with luthier's own names in its WGSL, and in its bindings and the interfaces of shaders: what the runtime calls. Texts of other languages stay.
+    pub fn in_own_names(&self) -> Cow<'_, Self> {
+        let names = &self.manifest.names;
+        if names.is_default() {
+            return Cow::Borrowed(self);
+        }
+        let mut own = self.clone();
+        names.in_bindings(Names::own, &mut own.manifest.bindings);
+        for shader in &mut own.shaders {
+            names.in_interface(Names::own, &mut shader.interface);
+            if shader.target == Target::Wgsl {
+                shader.bytes = names.own_wgsl(shader.text()).into_bytes();
+            }
+        }
+        own.manifest.names = Names { first_binding: names.first_binding, ..Names::default() };
+        Cow::Owned(own)
     }
 
     /// Bytes of the texels of all tables.

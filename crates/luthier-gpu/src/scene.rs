@@ -57,6 +57,7 @@ pub struct Scene {
 
 impl Scene {
     pub(crate) fn new(context: Context, package: &Package, form: Form) -> Result<Self, GpuError> {
+        let package = &*package.in_own_names();
         let shader = package.shader(form)?;
         let (wgsl, interface) = (shader.text(), shader.interface.clone());
         let bindings = ShaderBindings::new(&context, package, &interface)?;
@@ -96,6 +97,7 @@ impl Scene {
     /// # Errors
     /// [`PackageError::NoShader`](crate::PackageError::NoShader), and as [`Gpu::scene`](crate::Gpu::scene) for the tables.
     pub fn rebound(&self, package: &Package) -> Result<Option<Self>, GpuError> {
+        let package = &*package.in_own_names();
         if package.wgsl(self.form)? != self.wgsl {
             return Ok(None);
         }

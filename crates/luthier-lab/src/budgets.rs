@@ -52,7 +52,7 @@ If no candidate holds that, luthier takes the nearest. `--no-search` takes the f
 | fgd | 8 to 64 nodes along each axis, four pairs of exponents, rgba8unorm, rgba16float, rgba32float, bc6h-rgb-ufloat |
 | film | 16 to 96 by 32 to 384 nodes, u^2 to u^4, the formats of fgd and rgb10a2unorm |
 | phase | closed form; 16 to 512 nodes, rgba16float, rgba32float |
-| lobes | no lobe, one of one width, one or two; 19, 10, 7 or 4 rows; rgba16float. By `max_lobe_err` and `max_albedo_err` alone. The lowest cost wins, then the fewest bytes |
+| lobes | no lobe, one of one width, one, two or three; 19, 10, 7 or 4 rows; rgba16float. By `max_lobe_err` and `max_albedo_err` alone. The lowest cost wins, then the fewest bytes |
 
 luthier searches for fgd, film and phase tables only if a budget is stated. Their values take long to compute, and `luthier shader` is to answer at
 once if there is no budget. Thickness textures are pictures and are not searched. Escape tiles have a fixed size.

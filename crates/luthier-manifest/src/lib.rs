@@ -64,7 +64,7 @@ pub use place::{LayerValues, PlaceValues};
 pub use reads::reads;
 pub use record::{LAYER_WORDS, LayerKind, LayerRecord};
 pub use search::{Budget, Candidate, CandidateForm, MeasuredError, REL_FLOOR, Search};
-pub use shader::{Check, FunctionEntry, FunctionGroup, Functions, Interface, StructureEntry};
+pub use shader::{Check, FunctionEntry, FunctionGroup, Functions, Interface, Names, StructureEntry};
 pub use surface::{CellsRecord, ParticlesRecord, SurfaceEntry, SwitchBy, SwitchRecord};
 pub use target::Target;
 pub use tiles::Tiles;

@@ -1,4 +1,4 @@
-//! Decisions of a search that stay.
+//! Decisions of a search, and numbers of materials, that stay.
 
 use luthier_lut::TableKind;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ pub struct Decision {
     pub candidate: Candidate,
 }
 
-/// A lock file: the sizes, axes and formats that bakes of a folder keep until a budget breaks.
+/// A lock file: the sizes, axes and formats that bakes of a folder keep until a budget breaks, and the order of its materials.
 ///
 /// ```
 /// use luthier_manifest::{Lock, Manifest};
@@ -32,13 +32,22 @@ pub struct Lock {
     pub schema: u32,
     /// Decisions in the order of their kinds.
     pub decisions: Vec<Decision>,
+    /// Names of materials in the order of their numbers: one that is added comes last, and the others keep theirs. Empty in a lock of an earlier version.
+    #[serde(default)]
+    pub materials: Vec<String>,
+}
+
+impl Default for Lock {
+    fn default() -> Self {
+        Self { schema: Self::SCHEMA, decisions: Vec::new(), materials: Vec::new() }
+    }
 }
 
 impl Lock {
     /// The form of the file that this crate reads and writes.
     pub const SCHEMA: u32 = 1;
 
-    /// The decisions of the searches of a bake.
+    /// The decisions of the searches of a bake, and its materials.
     pub fn of(manifest: &Manifest) -> Self {
         let decisions = manifest.searches.iter().filter_map(|search| {
             let mut candidate = search.front.get(search.chosen)?.clone();
@@ -49,7 +58,23 @@ impl Lock {
         });
         let mut decisions: Vec<Decision> = decisions.collect();
         decisions.sort_by_key(|decision| decision.kind);
-        Self { schema: Self::SCHEMA, decisions }
+        let materials = manifest.materials.iter().map(|material| material.name.clone()).collect();
+        Self { schema: Self::SCHEMA, decisions, materials }
+    }
+
+    /// The lock with materials of an earlier one first, in their order, whether they are in this bake or not.
+    ///
+    /// ```
+    /// use luthier_manifest::Lock;
+    ///
+    /// let of = |names: [&str; 2]| Lock { materials: names.map(str::to_owned).into(), ..Lock::default() };
+    /// assert_eq!(of(["brass", "gold"]).after(&of(["gold", "tin"]).materials).materials, ["gold", "tin", "brass"]);
+    /// ```
+    #[must_use]
+    pub fn after(mut self, names: &[String]) -> Self {
+        let added = self.materials.into_iter().filter(|name| !names.contains(name));
+        self.materials = names.iter().cloned().chain(added).collect();
+        self
     }
 
     /// The lock of a text.
@@ -74,8 +99,13 @@ impl Lock {
         Ok(text + "\n")
     }
 
-    /// Whether two locks hold equal decisions; errors measured at the time do not count.
+    /// Whether two locks hold equal decisions and materials; errors measured at the time do not count.
     pub fn decides_as(&self, other: &Self) -> bool {
+        self.serves_as(other) && self.materials == other.materials
+    }
+
+    /// Whether two locks hold equal sizes, axes and formats.
+    pub fn serves_as(&self, other: &Self) -> bool {
         let [ours, theirs] = [self, other].map(|lock| lock.decisions.iter().map(|d| (d.kind, &d.candidate.form)));
         ours.eq(theirs)
     }

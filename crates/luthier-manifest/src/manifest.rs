@@ -10,7 +10,7 @@ use crate::file::FileEntry;
 use crate::limits::MaterialTexture;
 use crate::material::MaterialEntry;
 use crate::search::Search;
-use crate::shader::{Check, Functions, Interface};
+use crate::shader::{Check, Functions, Interface, Names};
 use crate::surface::SurfaceEntry;
 use crate::target::Target;
 
@@ -42,7 +42,10 @@ pub struct Manifest {
     /// Groups of functions of every shader; absent if there is `eval` alone.
     #[serde(default, skip_serializing_if = "Functions::is_eval_alone")]
     pub functions: Functions,
-    /// Resources of group 0, and where to bind them.
+    /// Names in shaders, and places of their resources; absent if they are those by default.
+    #[serde(default, skip_serializing_if = "Names::is_default")]
+    pub names: Names,
+    /// Resources, and where to bind them in the group of `names`.
     pub bindings: Vec<BindingEntry>,
     /// The material buffer: little-endian `vec4<f32>` words, see [`crate::material_buffer`].
     pub material_buffer: FileEntry,
@@ -176,6 +179,7 @@ impl Manifest {
             choice: None,
             shaders: Vec::new(),
             functions: Functions::default(),
+            names: Names::default(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),
             material_texture: MaterialTexture::default(),
@@ -364,6 +368,7 @@ mod tests {
                 checks: vec![Check { by: "naga 30".into(), read: Target::Wgsl, capabilities: Some(Vec::new()) }],
             }],
             functions: Functions::default(),
+            names: Names::default(),
             bindings: vec![BindingEntry {
                 binding: 1,
                 name: "luthier_distribution".into(),

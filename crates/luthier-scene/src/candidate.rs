@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_PI;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use luthier_layers::models::lobes::{FitSettings, Lobes, Traced, Varying, most_lobes};
+use luthier_layers::models::lobes::{FitSettings, Lobes, Traced, Varying, most_searched};
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::twins::real_time::Twin;
 use luthier_layers::twins::terms::Exact;
@@ -202,7 +202,7 @@ pub fn forms(material: &Material) -> Vec<Option<LobesForm>> {
     if !luthier_bake::has_lone_rows(material) {
         return vec![None];
     }
-    let most = most_lobes(&material.stack);
+    let most = most_searched(&material.stack, None);
     let has_one_width = Varying::axes(None, &material.stack).is_none();
     let forms = LobesForm::ALL.into_iter().filter(|form| form.most() <= most);
     forms.filter(|form| has_one_width || *form != LobesForm::OneWidth).map(Some).collect()
@@ -211,12 +211,12 @@ pub fn forms(material: &Material) -> Vec<Option<LobesForm>> {
 /// Lobes of a stack in each of [`LobesForm::ALL`], as bakes fit them.
 fn fits_of(stack: &Stack, color: &Color) -> Vec<Lobes> {
     let traced = Traced::new(stack, color, None, FitSettings::of(None));
-    let most = most_lobes(stack);
+    let most = most_searched(stack, None);
     let fits = LobesForm::ALL.map(|form| {
         let fit = traced.fit(form.most().min(most), 0.0);
         match form {
             LobesForm::OneWidth => fit.clone().of_one_width().unwrap_or(fit),
-            LobesForm::NoLobe | LobesForm::OneLobe | LobesForm::TwoLobes => fit,
+            LobesForm::NoLobe | LobesForm::OneLobe | LobesForm::TwoLobes | LobesForm::ThreeLobes => fit,
         }
         .nominal()
     });

@@ -1,6 +1,7 @@
 //! Choice of the first candidate that holds the budget.
 
 use luthier_cost::CostUnit;
+use luthier_layers::models::lobes::LOBES;
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_manifest::{
     ColorMode, Form, LobesForm, MaterialChoice, SceneBudget, SceneCandidate, SceneError, ShadingModel, Verdict,
@@ -48,7 +49,7 @@ impl Widths {
         match candidate.lobes {
             Some(LobesForm::NoLobe) => true,
             Some(LobesForm::OneWidth) => self == Self::One,
-            Some(LobesForm::OneLobe | LobesForm::TwoLobes) => self == Self::Two,
+            Some(LobesForm::OneLobe | LobesForm::TwoLobes | LobesForm::ThreeLobes) => self == Self::Two,
             // Rows over more than the view have two widths.
             None => self == Self::Two || !candidate.model.is_fitted(),
         }
@@ -136,9 +137,10 @@ impl Judge {
     }
 
     /// The candidate that a bake of the material by itself comes nearest to, with its error: the whole stack by its own model in its own colour, with the most
-    /// lobes. `None` where that model is no candidate.
+    /// lobes that bakes without limits have. `None` where that model is no candidate.
     pub(crate) fn by_itself(&mut self) -> Option<SceneCandidate> {
-        let is_own = |c: &Candidate| (c.model, c.color) == self.own && c.left_out.is_empty();
+        let has_few = |c: &Candidate| c.lobes.is_none_or(|form| form.most() <= LOBES);
+        let is_own = |c: &Candidate| (c.model, c.color) == self.own && c.left_out.is_empty() && has_few(c);
         let own = (0..self.candidates.len()).filter(|number| is_own(&self.candidates[*number]));
         let own = own.max_by_key(|number| self.candidates[*number].lobes)?;
         Some(self.judge(own, &SceneBudget::default()).0)

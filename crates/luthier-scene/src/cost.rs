@@ -1,6 +1,7 @@
 //! Costs of shaders by model, form and shape, on a device.
 
 use luthier_cost::{DEFAULT_DEVICE, DeviceCost, Family, StaticCounts};
+use luthier_layers::models::lobes::LOBES;
 use luthier_manifest::{CostDevice, Form, LobesForm, Manifest, ShadingModel};
 use serde::{Deserialize, Serialize};
 
@@ -146,12 +147,13 @@ impl CostTable {
     }
 
     /// Cost of a shader for a surface of some [`shape`](crate::shape). The flag is true if the shape was not counted and the cost is that of the most
-    /// similar one; among equally similar shapes the dearest counts. `lobes` is the form of rows of that model; without one they are as dear as the dearest in a texture that is filtered.
+    /// similar one; among equally similar shapes the dearest counts. `lobes` is the form of rows of that model; without one they are as dear as the dearest that bakes without limits have, in a texture that is filtered.
     pub fn cost(&self, model: ShadingModel, form: Form, shape: &str, lobes: Option<LobesForm>) -> Option<(f64, bool)> {
         let wanted = shape_of(model, shape);
         let in_steps = self.has_steps && lobes.is_some();
         let rows = self.rows.iter().filter(|row| row.model == model && row.form == form);
-        let rows = rows.filter(|row| row.lobes.is_none() || lobes.is_none() || row.lobes == lobes);
+        let plain = |form: LobesForm| form.most() <= LOBES;
+        let rows = rows.filter(|row| row.lobes.is_none_or(|form| lobes.map_or(plain(form), |lobes| lobes == form)));
         let rows = rows.filter(|row| in_steps || !row.in_steps);
         let near = rows.map(|row| (distance(&row.shape, &wanted), in_steps && !row.in_steps, row.cost));
         let (distance, _, cost) = near.min_by(|a, b| a.0.cmp(&b.0).then(a.1.cmp(&b.1)).then(b.2.total_cmp(&a.2)))?;

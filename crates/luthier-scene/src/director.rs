@@ -5,7 +5,8 @@ use luthier_bake::{BakeError, Options, Store};
 use luthier_export::{Package, PackageError, sha256};
 use luthier_lut::{FormatSet, RowLayout, TexelFormat};
 use luthier_manifest::{
-    Budget, Functions, MaterialChoice, SceneBudget, SceneCandidate, SceneChoice, SceneError, ShadingModel, Target,
+    Budget, Functions, MaterialChoice, Names, SceneBudget, SceneCandidate, SceneChoice, SceneError, ShadingModel,
+    Target,
 };
 use luthier_material::{Material, Scene};
 use luthier_report::{ReportError, Subject, TableTerms, Weights};
@@ -27,6 +28,7 @@ pub struct Director<'a> {
     materials: &'a [Material],
     targets: Vec<Target>,
     functions: Functions,
+    names: Names,
     store: &'a dyn Store,
     costs: CostTable,
     /// Whether the target has the format of rows of lobes, and whether models may be fitted.
@@ -126,6 +128,7 @@ impl<'a> Director<'a> {
             materials,
             targets,
             functions: Functions::default(),
+            names: Names::default(),
             store,
             costs: rows_of(scene, if has_rows { costs } else { costs.without(ShadingModel::Lobes) }),
             has_rows,
@@ -158,6 +161,12 @@ impl<'a> Director<'a> {
     #[must_use]
     pub fn with_functions(self, functions: Functions) -> Self {
         Self { functions, ..self }
+    }
+
+    /// Takes names for the shaders and places for their resources.
+    #[must_use]
+    pub fn with_names(self, names: Names) -> Self {
+        Self { names, ..self }
     }
 
     /// Chooses and bakes. `max_rel`, if given, replaces the limits on the relative error. The form `baked` is tried first, and `full` if tables do not
@@ -239,6 +248,7 @@ impl<'a> Director<'a> {
             targets,
             shading: Shading { forms: vec![form], ..Shading::default() },
             functions,
+            names: self.names.clone(),
             refuses: false,
             ..Bake::default()
         };

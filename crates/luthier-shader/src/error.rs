@@ -32,6 +32,14 @@ pub enum ShaderError {
         /// The identifier.
         constant: String,
     },
+    /// A word of the shader begins with the prefix of its names.
+    #[error("a shader has the word `{word}`, which begins as names with the prefix `{prefix}` do; take another prefix")]
+    Prefix {
+        /// The prefix.
+        prefix: String,
+        /// The word.
+        word: String,
+    },
     /// Cells of a surface choose among no material, or among too many.
     #[error("cells of the surface `{surface}` take 1 to {limit} materials")]
     Choices {

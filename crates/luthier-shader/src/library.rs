@@ -38,7 +38,7 @@ pub fn library(wgsl: &str, target: Target) -> Result<String, ShaderError> {
             glsl::from_wgsl(wgsl, &bindings, group, &calls, target)
         }
         Target::Hlsl => hlsl::from_wgsl(wgsl, &bindings, group),
-        Target::Msl => msl::from_wgsl(wgsl, &bindings),
+        Target::Msl => msl::from_wgsl(wgsl, &bindings, group),
         Target::SpirV => Err(ShaderError::NotText),
     }
 }

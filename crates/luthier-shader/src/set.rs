@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use luthier_lut::{AtlasLayout, TableKind, TexelFormat, Values};
 use luthier_manifest::{
     BUFFER_WORDS_MAX, BindingEntry, FunctionGroup, Functions, LAYER_WORDS, LayerKind, LayerRecord, MATERIAL_WORDS,
-    Manifest, MaterialEntry, ShadingModel, SurfaceEntry, reads,
+    Manifest, MaterialEntry, Names, ShadingModel, SurfaceEntry, reads,
 };
 
 use crate::identifiers::is_of_word;
@@ -79,6 +79,8 @@ pub struct MaterialSet<'a> {
     pub tables: Vec<TableFace>,
     /// Groups of functions in its shaders.
     pub functions: Functions,
+    /// Names and places in the program that the shaders are for.
+    pub names: Names,
 }
 
 /// Places of materials in a buffer that has others, too.
@@ -93,7 +95,14 @@ pub struct Within {
 impl<'a> MaterialSet<'a> {
     /// Materials and tables, for shaders of `luthier_eval` alone.
     pub fn new(materials: &'a [MaterialEntry], tables: Vec<TableFace>) -> Self {
-        Self { materials: materials.into(), within: None, surfaces: &[], tables, functions: Functions::default() }
+        Self {
+            materials: materials.into(),
+            within: None,
+            surfaces: &[],
+            tables,
+            functions: Functions::default(),
+            names: Names::default(),
+        }
     }
 
     /// Names of the textures of tables with more than 4 bytes a texel: their filtered reads cost more.
@@ -102,7 +111,7 @@ impl<'a> MaterialSet<'a> {
         wide.map(|table| format!("luthier_{}", table.kind.name())).collect()
     }
 
-    /// All materials, tables and groups of functions of a bake.
+    /// All materials, tables and groups of functions of a bake. Names are luthier's own.
     pub fn from_manifest(manifest: &'a Manifest) -> Self {
         let tables = manifest.tables.iter();
         let faces = tables.map(|t| TableFace { kind: t.kind, layout: t.layout.clone(), format: t.format });
@@ -112,6 +121,7 @@ impl<'a> MaterialSet<'a> {
             surfaces: &manifest.surfaces,
             tables: faces.collect(),
             functions: manifest.functions.clone(),
+            names: Names::default(),
         }
     }
 
@@ -289,7 +299,7 @@ impl<'a> MaterialSet<'a> {
     }
 }
 
-/// Resources to bind in group 0 for a form of the shader: textures and buffers of tables that are read, the sampler if any of them is filtered, the
+/// Resources to bind for a form of the shader, with luthier's own names and the numbers of [`MaterialSet::names`]: textures and buffers of tables that are read, the sampler if any of them is filtered, the
 /// material buffer, and the environment's.
 ///
 /// ```
@@ -317,6 +327,7 @@ pub fn bindings(set: &MaterialSet<'_>, form: Form) -> Vec<BindingEntry> {
     if set.shows_environment(form) {
         bindings.extend(ENVIRONMENT_BINDINGS.map(|(binding, name, resource)| entry(binding, name, resource)));
     }
+    bindings.iter_mut().for_each(|entry| entry.binding += set.names.first_binding);
     bindings
 }
 

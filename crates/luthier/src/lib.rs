@@ -201,6 +201,21 @@ pub use luthier_manifest::FunctionGroup;
 #[doc(inline)]
 pub use luthier_manifest::Functions;
 
+/// First word of the names of a package, and its place among the bindings of a program.
+///
+/// ```
+/// use luthier::{Bake, Form, MemoryStore, Names};
+///
+/// let chalk = luthier::parse("chalk.toml", "schema = 1\nname = \"chalk\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.8\n")?;
+/// let names = Names { prefix: "wall".to_owned(), first_binding: 16, ..Names::default() };
+/// let package = Bake { names, ..Bake::wgsl(&[Form::Full]) }.package(&[chalk], &MemoryStore::default())?;
+/// let wgsl = package.wgsl(Form::Full)?;
+/// assert!(wgsl.contains("fn wall_eval(") && wgsl.contains("@group(0) @binding(22)") && wgsl.contains("WALL_MATERIAL_CHALK"));
+/// # Ok::<(), luthier::Error>(())
+/// ```
+#[doc(inline)]
+pub use luthier_manifest::Names;
+
 /// The description of a package, as `manifest.json` has it.
 ///
 /// ```

@@ -2,7 +2,7 @@
 
 use luthier_bake::{Baked, Options, Silent, bake_with};
 use luthier_lut::{RowLayout, TableKind, WeightBits};
-use luthier_manifest::{Budget, LobesForm, ShadingModel};
+use luthier_manifest::{Budget, CandidateForm, LobesForm, ShadingModel};
 use luthier_material::Material;
 
 use crate::materials::{STORE, atlas, conductor, dielectric, material, no_images};
@@ -77,6 +77,38 @@ fn a_limit_takes_the_form_of_the_lowest_cost() {
     assert_eq!(last_part(0.03), (5.0, false));
 }
 
+/// Light that leaves three coats by several ways has more than two lobes. Without limits there are two.
+#[test]
+fn a_tight_limit_takes_a_third_lobe() {
+    let layers =
+        [("1.24", 0.008), ("1.77", 0.035), ("1.24", 0.373)].map(|(ior, alpha)| dielectric(ior, alpha)).concat();
+    let mut coats = material("coats", &(layers + &conductor("\"al\"", 0.01)), "");
+    coats.bake.model = Some(ShadingModel::Lobes);
+    let materials = [coats];
+    let of = |limit: Option<f64>| {
+        let budget = Budget { max_lobe_err: limit, ..Budget::default() };
+        bake_with(&materials, &Options { budget, ..Options::default() }, &no_images, &Silent, &*STORE).unwrap()
+    };
+    let last_part = |baked: &Baked| atlas(baked, TableKind::Lobes).layout.y.as_ref().unwrap().max;
+    assert_eq!(last_part(&of(None)), 5.0);
+    let all = of(Some(1.0));
+    let search = all.searches.iter().find(|search| search.kind == TableKind::Lobes).unwrap();
+    let least = |last: f64| {
+        let of_form = search.front.iter().filter(|candidate| match &candidate.form {
+            CandidateForm::Table { y: Some(y), .. } => y.max == last,
+            _ => false,
+        });
+        of_form.filter_map(|candidate| candidate.error.lobe).fold(f64::INFINITY, f64::min)
+    };
+    let [two, three] = [5.0, 7.0].map(least);
+    assert!(three < 0.8 * two, "{three} {two}");
+    let tight = of(Some(0.5 * (two + three)));
+    let record = tight.materials[0].constants.lobes.unwrap();
+    assert_eq!((record.lobes, LobesForm::of(&record), last_part(&tight)), (3, Some(LobesForm::ThreeLobes), 7.0));
+    assert!(record.error.unwrap().lobe <= 0.5 * (two + three));
+    assert_eq!(last_part(&of(Some(1.01 * two))), 5.0);
+}
+
 /// Rows of a coat with a weight beside textures are those of two materials: the one without the weight, and the layers below the coat alone.
 #[test]
 fn sides_of_a_coat_have_the_rows_of_two_materials() {
@@ -131,12 +163,13 @@ fn forms_of_materials_decide_the_rows_of_a_set() {
         coated.bake.lobes = Some(form);
         coated
     };
-    let [none, narrow, one, two] = LobesForm::ALL.map(|form| with(form.name(), form));
+    let [none, narrow, one, two, three] = LobesForm::ALL.map(|form| with(form.name(), form));
     for (materials, last_part) in [
         ([none.clone(), with("other", LobesForm::NoLobe)], 1.0),
         ([none.clone(), narrow.clone()], 2.0),
         ([narrow.clone(), one.clone()], 3.0),
         ([none.clone(), two.clone()], 5.0),
+        ([two.clone(), three.clone()], 7.0),
     ] {
         let baked = bake_with(&materials, &Options::default(), &no_images, &Silent, &*STORE).unwrap();
         let forms = materials.each_ref().map(|material| material.bake.lobes.unwrap());

@@ -251,6 +251,8 @@ pub(crate) struct Emission {
     /// Groups of functions beside luthier_eval: `light` (two steps for many lights), `sample` (drawn directions), `propose` (a direction for each lobe), `albedo`, `environment` (prefiltered, of materials of lobes; `environment-4` with four reads a lobe, as -2 and -1, in place of eight), `surface` (normals of a renderer's own)
     #[arg(long, value_parser = named::<FunctionGroup>(FunctionGroup::NAMES), value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) functions: Vec<FunctionGroup>,
+    #[command(flatten)]
+    pub(crate) names: NamesOptions,
 }
 
 /// Limits on tables. Each replaces that of the files' `[budget]`; the bake takes the cheapest tables that hold them (docs/pages/budgets.md).
@@ -432,6 +434,9 @@ pub(crate) use device::CostsOf;
 
 mod manual;
 pub(crate) use manual::{CompletionsOptions, ManOptions};
+
+mod names;
+pub(crate) use names::NamesOptions;
 
 mod environment;
 pub(crate) use environment::{EnvironmentOptions, LayoutName};
@@ -624,6 +629,8 @@ pub(crate) struct ShaderOptions {
     /// File to write instead of standard output
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) names: NamesOptions,
 }
 
 #[derive(Debug, Args)]

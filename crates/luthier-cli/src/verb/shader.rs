@@ -25,7 +25,7 @@ pub(crate) fn run(options: &ShaderOptions) -> Outcome {
     let mut manifest = outline(&materials, &Options { layout, ..Options::default() }, store()?)?;
     manifest.surfaces = surfaces;
     manifest.functions = functions;
-    let set = MaterialSet::from_manifest(&manifest);
+    let set = MaterialSet { names: options.names.names(), ..MaterialSet::from_manifest(&manifest) };
     let set = if options.closed { set.with_closed_distribution() } else { set };
     let (form, target) = (options.form, options.target);
     let bytes = match (target, options.complete) {

@@ -49,8 +49,14 @@ impl Ask {
 }
 
 /// Forms of rows in the order of the page: those over the view alone, and any over something beside it.
-pub(super) const FORMS: [Option<LobesForm>; 5] =
-    [Some(LobesForm::NoLobe), Some(LobesForm::OneWidth), Some(LobesForm::OneLobe), Some(LobesForm::TwoLobes), None];
+pub(super) const FORMS: [Option<LobesForm>; LobesForm::ALL.len() + 1] = [
+    Some(LobesForm::NoLobe),
+    Some(LobesForm::OneWidth),
+    Some(LobesForm::OneLobe),
+    Some(LobesForm::TwoLobes),
+    Some(LobesForm::ThreeLobes),
+    None,
+];
 
 /// A form of [`FORMS`] in words.
 pub(super) const fn words(form: Option<LobesForm>) -> &'static str {

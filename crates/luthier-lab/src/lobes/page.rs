@@ -35,7 +35,7 @@ pub(super) fn page(groups: &[Group], options: &LobesOptions) -> Result<String, s
 
 const INTRODUCTION: &str = "\
 The model `lobes` (`luthier-layers/src/models/lobes`) simulates a stack and fits the light from below the first interface by a few lobes. This page
-compares the fits with another simulation of other random numbers, the judge. Fits are those of a bake: the fewest lobes that do, two at
+compares the fits with another simulation of other random numbers, the judge. Fits are those of a bake without limits: the fewest lobes that do, two at
 most. Beside them are two models of papers.
 
 The *lobe error* is the share of the light of the judge that has to move to another cell of directions, as in [models.md](models.md). The
@@ -63,7 +63,7 @@ fitted and judged anew with one thing changed; columns are the errors that are l
 - *4x paths*: the fit has four times the paths for each row.
 - *2x rows*: the fit has half the distance between rows over the view.
 - *2 lobes*: the fit has two lobes, where a bake took fewer.
-- *3 lobes*: the fit has one lobe more than a bake may have.
+- *3 lobes*: the fit has one lobe more, which a bake takes under a limit alone.
 - *channels alone*: each channel is fitted by itself, from as many paths, so that it has its own shapes.
 - *other judge*: the judge has other random numbers.
 

@@ -10,7 +10,7 @@ luthier_lut::named! {
     /// ```
     /// use luthier_manifest::LobesForm;
     ///
-    /// assert_eq!(LobesForm::ALL.map(LobesForm::most), [0, 1, 1, 2]);
+    /// assert_eq!(LobesForm::ALL.map(LobesForm::most), [0, 1, 1, 2, 3]);
     /// assert_eq!(LobesForm::OneWidth.words(), "one lobe of one width");
     /// ```
     #[derive(Serialize, Deserialize)]
@@ -24,6 +24,8 @@ luthier_lut::named! {
         OneLobe = "one-lobe",
         /// Two lobes.
         TwoLobes = "two-lobes",
+        /// Three lobes.
+        ThreeLobes = "three-lobes",
     }
 }
 
@@ -34,6 +36,7 @@ impl LobesForm {
             Self::NoLobe => 0,
             Self::OneWidth | Self::OneLobe => 1,
             Self::TwoLobes => 2,
+            Self::ThreeLobes => 3,
         }
     }
 
@@ -44,6 +47,7 @@ impl LobesForm {
             Self::OneWidth => "one lobe of one width",
             Self::OneLobe => "one lobe",
             Self::TwoLobes => "two lobes",
+            Self::ThreeLobes => "three lobes",
         }
     }
 
@@ -54,7 +58,8 @@ impl LobesForm {
             (None, 0, _) => Some(Self::NoLobe),
             (None, _, Some(_)) => Some(Self::OneWidth),
             (None, 1, None) => Some(Self::OneLobe),
-            (None, _, None) => Some(Self::TwoLobes),
+            (None, 2, None) => Some(Self::TwoLobes),
+            (None, _, None) => Some(Self::ThreeLobes),
         }
     }
 }

@@ -49,7 +49,7 @@ impl Interface {
         Self {
             functions: declared(wgsl, "fn ").filter_map(FunctionEntry::read).collect(),
             structures: declared(wgsl, "struct ").filter_map(StructureEntry::read).collect(),
-            bindings: declared(wgsl, "@group(0)").filter_map(binding).map(str::to_owned).collect(),
+            bindings: declared(wgsl, "@group(").filter_map(binding).map(str::to_owned).collect(),
         }
     }
 

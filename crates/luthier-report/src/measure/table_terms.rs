@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 use luthier_layers::models::lobes::{
-    Axes, Below, Critical, Family, FilmLight, Frame, OneWidth, Paint, Painted, Row, Slopes, ViewAxis, Wide,
+    Axes, Below, Critical, Family, FilmLight, Frame, LOBES, OneWidth, Paint, Painted, Row, Slopes, ViewAxis, Wide,
 };
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::models::statistics::diffuse_base::Veil;
@@ -55,9 +55,9 @@ impl Table<'_> {
         read(entry.kind, &entry.layout, entry.format, self.texels, tile, values, weights.bits(entry.format))
     }
 
-    /// A sampled row of lobes.
-    pub(crate) fn row(&self, tile: u32, cos_theta: f64, weights: Weights) -> Row {
-        Row::of_parts(&self.parts(tile, cos_theta, weights), self.has_base())
+    /// A sampled row of at most so many lobes.
+    pub(crate) fn row(&self, most: usize, tile: u32, cos_theta: f64, weights: Weights) -> Row {
+        Row::within(most, &self.parts(tile, cos_theta, weights), self.has_base())
     }
 
     /// A row of lobes between two tiles.
@@ -171,6 +171,8 @@ struct Lobes {
     tile: u32,
     axis: ViewAxis,
     frame: Frame,
+    /// Most lobes of a row.
+    most: usize,
     varying: Option<VaryingRecord>,
     /// Tail of the lobes of a family.
     tail: f64,
@@ -194,7 +196,8 @@ impl Lobes {
         let frame =
             Frame { index: record.index, wide: Wide::new(record.falloff, axis), axes, base, stretch: None, one_width };
         let tail = 1.0 / record.inverse_tails[0].max(1.0);
-        Self { tile, axis, frame, varying: record.varying, tail, family: None }
+        let most = most_lobes(record);
+        Self { tile, axis, frame, most, varying: record.varying, tail, family: None }
     }
 
     /// Takes the slope parameters and colours of a place, if rows are those of a family.
@@ -288,6 +291,11 @@ impl Here {
         let is_tinted = varying.factor == VaryingFactor::SlabFactor && (r != g || g != b);
         is_tinted.then(|| self.slab_factors.map(|factor| away(factor) * (f64::from(varying.tiles) - 1.0)))
     }
+}
+
+/// The most lobes that rows of a material have: a table may have parts of more.
+pub(crate) fn most_lobes(record: &LobesRecord) -> usize {
+    LOBES.max(record.lobes as usize)
 }
 
 /// Distance of the root of a factor from 1, along the tiles over it.
@@ -585,10 +593,10 @@ impl ShaderTerms for TableTerms<'_> {
     }
 
     fn below(&self, wo: DVec3) -> Option<Below> {
-        let Lobes { tile, axis, frame, varying, tail, family } = self.lobes.as_ref().filter(|_| wo.z > 0.0)?;
+        let Lobes { tile, axis, frame, most, varying, tail, family } = self.lobes.as_ref().filter(|_| wo.z > 0.0)?;
         let (table, cos_theta) = (self.table(TableKind::Lobes)?, axis.cosine(wo.z));
         let row = match (frame.axes, varying) {
-            (Some(axes), _) => axes.row(wo, |number| table.row(tile + number as u32, cos_theta, self.weights)),
+            (Some(axes), _) => axes.row(wo, |number| table.row(*most, tile + number as u32, cos_theta, self.weights)),
             (None, Some(_)) if let Some((family, slopes, paint)) = family => {
                 let alphas = slopes.map(Slopes::mean);
                 let [coat, base] = family.places(alphas).map(|place| (place as usize, place.fract()));
@@ -616,7 +624,7 @@ impl ShaderTerms for TableTerms<'_> {
                 };
                 row.spread(spread)
             }
-            (None, None) => table.row(*tile, cos_theta, self.weights),
+            (None, None) => table.row(*most, *tile, cos_theta, self.weights),
         };
         Some(Below::new(*frame, row, wo))
     }

@@ -111,6 +111,7 @@ impl Bake {
             choice: None,
             shaders: Vec::new(),
             functions: luthier_manifest::Functions::default(),
+            names: luthier_manifest::Names::default(),
             bindings: Vec::new(),
             material_buffer: FileEntry::default(),
             material_texture: luthier_manifest::MaterialTexture::default(),

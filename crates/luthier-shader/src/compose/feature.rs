@@ -171,8 +171,10 @@ luthier_lut::named! {
         OneLobe = "one_lobe",
         /// Rows have one lobe of one width.
         LobesOneWidth = "lobes_one_width",
-        /// No material of the set has more than two lobes.
+        /// Materials of the set have two lobes or more.
         TwoLobes = "two_lobes",
+        /// Materials of the set have three lobes.
+        ThreeLobes = "three_lobes",
         /// Materials of the set differ in the number of their lobes.
         LobesMixed = "lobes_mixed",
         /// Rows of lobes are over something beside the view.

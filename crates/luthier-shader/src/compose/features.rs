@@ -97,20 +97,20 @@ impl Features {
         for table in set.tables_read(form) {
             names.extend(table_read(table.kind));
             if let (TableKind::Lobes, Some(parts)) = (table.kind, &table.layout.y) {
-                // Part 0 is the remainder, the last part the albedo. In between are two parts for each lobe, or one where it has one width. Families have two
-                // lobes, whatever their parts.
-                let (word, most) = match parts.max as u32 {
-                    _ if names.contains(&Feature::LobesFamily) => (Some(Feature::TwoLobes), 2),
-                    2 | 3 => (Some(Feature::OneLobe), 1),
-                    5 => (Some(Feature::TwoLobes), 2),
-                    _ => (None, 0),
-                };
-                names.extend(word);
-                if parts.max == 2.0 && word.is_some() {
-                    names.insert(Feature::LobesOneWidth);
-                }
                 let sides: Vec<MaterialEntry> = set.materials.iter().filter_map(MaterialEntry::side).collect();
-                if set.materials.iter().chain(&sides).filter_map(lobes_of).any(|lobes| lobes < most) {
+                let lobes: Vec<u32> = set.materials.iter().chain(&sides).filter_map(lobes_of).collect();
+                // Part 0 is the remainder, and the last part of at most two lobes the albedo. In between are two parts for each lobe, or one where it has one
+                // width. A third lobe has two parts behind the albedo. Families have two lobes, whatever their parts.
+                let (words, most): (&[Feature], u32) = match parts.max as u32 {
+                    _ if lobes.contains(&3) => (&[Feature::TwoLobes, Feature::ThreeLobes], 3),
+                    _ if names.contains(&Feature::LobesFamily) => (&[Feature::TwoLobes], 2),
+                    2 => (&[Feature::OneLobe, Feature::LobesOneWidth], 1),
+                    3 => (&[Feature::OneLobe], 1),
+                    5.. => (&[Feature::TwoLobes], 2),
+                    _ => (&[], 0),
+                };
+                names.extend(words);
+                if lobes.iter().any(|lobes| *lobes < most) {
                     names.insert(Feature::LobesMixed);
                 }
             }

@@ -280,12 +280,13 @@ fn declarations(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> String {
                 ("<storage, read>", "array<vec4<u32>>".to_owned())
             }
             (BindingEntry::STEPS, Buffer::Sized) => {
-                ("<storage, read>", format!("array<vec4<u32>, {}>", texels(set, entry.binding)))
+                ("<storage, read>", format!("array<vec4<u32>, {}>", texels(set, &entry.name)))
             }
             (BindingEntry::STEPS, Buffer::Texture) => ("", "texture_2d<u32>".to_owned()),
             _ => ("", entry.resource),
         };
-        let _ = writeln!(out, "@group(0) @binding({}) var{space} {}: {resource};", entry.binding, entry.name);
+        let (group, binding) = (set.names.group, entry.binding);
+        let _ = writeln!(out, "@group({group}) @binding({binding}) var{space} {}: {resource};", entry.name);
     }
     if buffer == Buffer::Texture {
         out.push_str(&word(set));
@@ -294,9 +295,9 @@ fn declarations(set: &MaterialSet<'_>, form: Form, buffer: Buffer) -> String {
     out
 }
 
-/// Texels of the table at a binding.
-fn texels(set: &MaterialSet<'_>, binding: u32) -> u32 {
-    let table = set.tables.iter().find(|table| table.kind.binding() == binding);
+/// Texels of the table of a binding.
+fn texels(set: &MaterialSet<'_>, name: &str) -> u32 {
+    let table = set.tables.iter().find(|table| format!("luthier_{}", table.kind.name()) == name);
     table.map_or(0, |table| table.layout.size().iter().product())
 }
 

@@ -63,7 +63,7 @@ fn declarations(wgsl: &str) -> Vec<(&str, &str)> {
     for line in wgsl.split_inclusive('\n') {
         let end = at + line.len();
         if name.is_none() && line.starts_with(['@', 'c', 'f', 's']) {
-            name = match line.strip_prefix("@group(0)") {
+            name = match line.strip_prefix("@group(") {
                 Some(binding) => binding.split(':').next().and_then(|rest| words(rest).last()),
                 None => words(line).nth(2),
             };

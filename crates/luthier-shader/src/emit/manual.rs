@@ -203,9 +203,9 @@ fn resources(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> V
         entries.sort_by_key(|entry| entry.binding);
     }
     let heading = match target {
-        Target::Wgsl | Target::Glsl450 | Target::SpirV => "Bindings, group 0:",
+        Target::Wgsl | Target::Glsl450 | Target::SpirV => &format!("Bindings, group {}:", set.names.group),
         Target::GlslEs300 => "Bindings, by name:",
-        Target::Hlsl => "Registers, space0:",
+        Target::Hlsl => &format!("Registers, space{}:", set.names.group),
         Target::Msl => "Bindings, by argument index of a complete shader:",
     };
     let mut texts = vec![heading.to_owned()];
@@ -234,7 +234,10 @@ fn resources(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> V
         );
     }
     how.push(match is_numbered {
-        true => format!("Numbers from {RESERVED_BINDINGS} up are yours."),
+        true => match set.names.first_binding {
+            0 => format!("Numbers from {RESERVED_BINDINGS} up are yours."),
+            first => format!("Numbers below {first} and from {} up are yours.", first + RESERVED_BINDINGS),
+        },
         false => "Set each sampler2D to a texture unit.".to_owned(),
     });
     texts.push(how.join(" "));
@@ -279,7 +282,7 @@ fn resource(set: &MaterialSet<'_>, form: Form, target: Target, entry: &BindingEn
         _ => format!("{binding} "),
     };
     let mut text = format!("{place}{name}: {kind}");
-    for table in set.tables_read(form).filter(|table| table.kind.binding() == *binding) {
+    for table in set.tables_read(form).filter(|table| format!("luthier_{}", table.kind.name()) == *name) {
         let ([width, height], [across, down]) = (table.layout.size(), table.layout.tile_size());
         let filter = if table.format.is_filterable() { "filtered" } else { "not filtered" };
         let axes: Vec<String> = std::iter::once(&table.layout.x).chain(&table.layout.y).map(axis).collect();

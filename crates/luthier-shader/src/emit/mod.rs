@@ -74,12 +74,13 @@ pub fn interface(set: &MaterialSet<'_>, form: Form) -> Result<Interface, ShaderE
 /// As [`emit`].
 pub fn complete(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<String, ShaderError> {
     let text = text(set, form, target, Part::Complete)?;
+    let entry = |glsl| set.names.named(glsl);
     Ok(match target {
         Target::Wgsl | Target::Hlsl | Target::Msl | Target::SpirV => text,
-        Target::Glsl450 => format!("#version 450 core\n{text}\n{}", include_str!("../glsl/fragment_450.glsl")),
+        Target::Glsl450 => format!("#version 450 core\n{text}\n{}", entry(include_str!("../glsl/fragment_450.glsl"))),
         Target::GlslEs300 => {
             let precision = "precision highp float;\nprecision highp int;\n";
-            format!("#version 300 es\n{precision}{text}\n{}", include_str!("../glsl/fragment_es300.glsl"))
+            format!("#version 300 es\n{precision}{text}\n{}", entry(include_str!("../glsl/fragment_es300.glsl")))
         }
     })
 }
@@ -90,7 +91,7 @@ pub fn complete(set: &MaterialSet<'_>, form: Form, target: Target) -> Result<Str
 /// # Errors
 /// As [`emit`].
 pub fn emit_spirv(set: &MaterialSet<'_>, form: Form) -> Result<Vec<u8>, ShaderError> {
-    spirv::library_spirv(&body(set, form, Target::SpirV, "")?)
+    spirv::library_spirv(&named(set, body(set, form, Target::SpirV, "")?)?)
 }
 
 /// A complete fragment shader in SPIR-V 1.3 (Vulkan 1.1), little endian, with the entry point `main`.
@@ -98,7 +99,7 @@ pub fn emit_spirv(set: &MaterialSet<'_>, form: Form) -> Result<Vec<u8>, ShaderEr
 /// # Errors
 /// As [`emit`].
 pub fn complete_spirv(set: &MaterialSet<'_>, form: Form) -> Result<Vec<u8>, ShaderError> {
-    spirv::shader(&body(set, form, Target::SpirV, FRAGMENT)?)
+    spirv::shader(&named(set, body(set, form, Target::SpirV, FRAGMENT)?)?)
 }
 
 /// A text in a language, below its manual. [`complete`] adds the entry points of GLSL.
@@ -115,13 +116,21 @@ fn text(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> Result
             wgsl.clone()
         }
         Target::Glsl450 | Target::GlslEs300 => {
-            glsl::from_wgsl(&wgsl, &bindings(set, form), 0, &calls(set, form), target)?
+            glsl::from_wgsl(&wgsl, &bindings(set, form), set.names.group, &calls(set, form), target)?
         }
-        Target::Hlsl => hlsl::from_wgsl(&wgsl, &bindings(set, form), 0)?,
-        Target::Msl => msl::from_wgsl(&wgsl, &bindings(set, form))?,
+        Target::Hlsl => hlsl::from_wgsl(&wgsl, &bindings(set, form), set.names.group)?,
+        Target::Msl => msl::from_wgsl(&wgsl, &bindings(set, form), set.names.group)?,
         Target::SpirV => return Err(ShaderError::NotText),
     };
-    Ok(format!("{}\n{body}", manual(set, form, target, part, &wgsl)?))
+    named(set, format!("{}\n{body}", manual(set, form, target, part, &wgsl)?))
+}
+
+/// The text with the names of a set.
+fn named(set: &MaterialSet<'_>, text: String) -> Result<String, ShaderError> {
+    match set.names.clash(&text) {
+        Some(word) => Err(ShaderError::Prefix { prefix: set.names.prefix.clone(), word: word.to_owned() }),
+        None => Ok(set.names.named(&text)),
+    }
 }
 
 /// The WGSL from which the text of a target is made, followed by `more`.

@@ -16,9 +16,10 @@ use crate::{ShaderError, Target};
 const WIDTH: usize = 120;
 
 /// The module in MSL 2.0. Argument indices of entry points are binding numbers.
-pub(crate) fn from_wgsl(wgsl: &str, bindings: &[BindingEntry]) -> Result<String, ShaderError> {
+pub(crate) fn from_wgsl(wgsl: &str, bindings: &[BindingEntry], group: u32) -> Result<String, ShaderError> {
     let (module, info) = module(wgsl)?;
-    let resources = EntryPointResources { resources: bindings.iter().map(slot).collect(), ..Default::default() };
+    let slots = bindings.iter().map(|entry| slot(entry, group));
+    let resources = EntryPointResources { resources: slots.collect(), ..Default::default() };
     let options = Options {
         lang_version: (2, 0),
         per_entry_point_map: module.entry_points.iter().map(|e| (e.name.clone(), resources.clone())).collect(),
@@ -52,14 +53,14 @@ fn type_of<'t>(text: &'t str, binding: &str) -> Option<(&'t str, String)> {
 }
 
 /// Argument index of a binding in an entry point.
-fn slot(entry: &BindingEntry) -> (ResourceBinding, BindTarget) {
+fn slot(entry: &BindingEntry, group: u32) -> (ResourceBinding, BindTarget) {
     let at = entry.binding as u8;
     let target = match entry.resource.as_str() {
         _ if entry.is_buffer() => BindTarget { buffer: Some(at), ..BindTarget::default() },
         "sampler" => BindTarget { sampler: Some(BindSamplerTarget::Resource(at)), ..BindTarget::default() },
         _ => BindTarget { texture: Some(at), ..BindTarget::default() },
     };
-    (ResourceBinding { group: 0, binding: entry.binding }, target)
+    (ResourceBinding { group, binding: entry.binding }, target)
 }
 
 /// The text without padding at the end of structures: no buffer holds them, and no initialiser names it.

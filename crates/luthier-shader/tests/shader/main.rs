@@ -17,6 +17,7 @@ mod lobes;
 mod machine;
 mod manual;
 mod names;
+mod packages;
 mod pages;
 mod paper;
 mod scenes;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use luthier_export::{Map, Package, Shader};
-use luthier_manifest::{Form, Interface, MaterialTexture, Target, material_buffer};
+use luthier_manifest::{Form, Interface, MaterialTexture, Names, Target, material_buffer};
 use luthier_shader::{MaterialSet, ShaderError};
 use rayon::prelude::*;
 
@@ -13,18 +13,22 @@ use crate::Error;
 pub(super) fn emit(package: &mut Package, targets: &[Target], forms: &[Form]) -> Result<(), Error> {
     let manifest = &mut package.manifest;
     manifest.material_texture = MaterialTexture::of(material_buffer(&manifest.materials).len());
-    let set = MaterialSet::from_manifest(manifest);
+    let names = manifest.names.clone();
+    let set = MaterialSet { names: names.clone(), ..MaterialSet::from_manifest(manifest) };
     // A form has one interface in all languages.
     let sets = forms.par_iter().map(|&form| {
         let set = set.in_form(form);
-        let interface = luthier_shader::interface(&set, form)?;
+        let mut interface = luthier_shader::interface(&set, form)?;
+        names.in_interface(Names::named, &mut interface);
         Ok((form, set, interface))
     });
     let sets = sets.collect::<Result<Vec<_>, ShaderError>>()?;
     let wanted: Vec<_> = sets.iter().flat_map(|set| targets.iter().map(move |&to| (set, to))).collect();
     let shaders = wanted.into_par_iter().map(|((form, set, interface), target)| shader(set, *form, interface, target));
     package.shaders = shaders.collect::<Result<_, ShaderError>>()?;
-    manifest.bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));
+    let mut bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));
+    names.in_bindings(Names::named, &mut bindings);
+    manifest.bindings = bindings;
     Ok(())
 }
 

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use luthier_bake::{BakedMaterial, ImageReader, Missing, Observer, Options, Share, Silent, Store};
 use luthier_export::{GENERATOR, Package, Table};
 use luthier_lut::{Atlas, RowLayout, TableKind};
-use luthier_manifest::{Form, FunctionGroup, Functions, Manifest, SurfaceEntry, TableEntry, Target};
+use luthier_manifest::{Form, FunctionGroup, Functions, Manifest, Names, SurfaceEntry, TableEntry, Target};
 use luthier_material::{Diagnostic, Material};
 use luthier_shader::ShaderError;
 use luthier_texture::Texture;
@@ -45,6 +45,8 @@ pub struct Bake<'a> {
     pub targets: Vec<Target>,
     /// Groups of functions of each shader.
     pub functions: Functions,
+    /// Names in shaders and places of their resources, where several packages are linked into one program.
+    pub names: Names,
     /// Surfaces of the materials, by their numbers.
     pub surfaces: Vec<SurfaceEntry>,
     /// The observer of all jobs, which may cancel the bake.
@@ -60,6 +62,7 @@ impl Default for Bake<'_> {
             options: Options::default(),
             targets: vec![Target::Wgsl, Target::Glsl450, Target::GlslEs300],
             functions: Functions::default(),
+            names: Names::default(),
             surfaces: Vec::new(),
             observer: &Silent,
             refuses: true,
@@ -247,7 +250,8 @@ impl<'a> Bake<'a> {
             ..table_entry(atlas.kind, &atlas.layout, atlas.format)
         });
         let (functions, surfaces) = (self.functions.clone(), self.surfaces.clone());
-        let manifest = Manifest { functions, surfaces, ..Manifest::new(GENERATOR, entries, tables.collect()) };
+        let names = self.names.clone();
+        let manifest = Manifest { functions, surfaces, names, ..Manifest::new(GENERATOR, entries, tables.collect()) };
         let table =
             |atlas: Atlas| Table { kind: atlas.kind, texture: Texture::from_atlas(&atlas), truth: Some(atlas.truth) };
         let tables = atlases.into_iter().map(table).collect();

@@ -78,6 +78,29 @@ impl Sources {
         }
     }
 
+    /// Puts the materials of these names first, in this order; the others follow in theirs. So materials keep the numbers of an earlier bake where one is
+    /// added. Call this before [`Sources::refuse`], which gives surfaces the numbers of their materials.
+    ///
+    /// ```
+    /// use luthier::{Files, Sources, TomlFile};
+    ///
+    /// let file = |name: &str| {
+    ///     let text = format!("schema = 1\nname = \"{name}\"\n[[layer]]\ntype = \"diffuse\"\nalbedo = 0.5\n");
+    ///     TomlFile { path: format!("{name}.toml").into(), bytes: text.into_bytes() }
+    /// };
+    /// let mut sources = Sources::of(Files::of(["chalk", "lime", "soot"].map(file).into()));
+    /// sources.put_first(&["soot".to_owned(), "tin".to_owned(), "chalk".to_owned()]);
+    /// let names = sources.materials.iter().filter_map(|source| Some(source.material()?.name.as_str()));
+    /// assert_eq!(names.collect::<Vec<_>>(), ["soot", "chalk", "lime"]);
+    /// ```
+    pub fn put_first(&mut self, names: &[String]) {
+        let place = |source: &Source| {
+            let name = source.material().map(|material| &material.name);
+            names.iter().position(|known| Some(known) == name).unwrap_or(names.len())
+        };
+        self.materials.sort_by_key(place);
+    }
+
     /// Makes sources unusable that cannot be baked, and adds warnings about features that a model leaves out. Pictures are read; nothing is
     /// simulated.
     ///

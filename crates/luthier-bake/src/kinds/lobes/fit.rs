@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use luthier_layers::models::lobes::{
-    Cover, EXCESS, Family, FitError, FitSettings, Judge, LOBES, SlopeAxis, Traced, Varied, Varying, most_lobes, shown,
+    Cover, EXCESS, Family, FitError, FitSettings, Judge, LOBES, SlopeAxis, Traced, Varied, Varying, most_lobes,
+    most_searched, shown,
 };
 use luthier_material::Material;
 use luthier_optics::Rgb;
@@ -108,6 +109,11 @@ pub(super) fn thinned(varied: Varied, step: usize) -> Varied {
 pub(super) struct Fits(Vec<Fit>);
 
 impl Fits {
+    /// The most lobes among which a search chooses.
+    pub(super) fn most(&self) -> usize {
+        self.0.len() - 1
+    }
+
     /// The fit; with at most `most` lobes, if a search decided so.
     pub(super) fn of(&self, most: Option<usize>) -> &Fit {
         &self.0[most.unwrap_or(0).min(self.0.len() - 1)]
@@ -124,6 +130,11 @@ pub(super) struct FitJob {
 }
 
 impl FitJob {
+    /// The most lobes of a fit.
+    fn most(&self) -> usize {
+        if self.is_searched { most_searched(&self.stack, self.varying) } else { most_lobes(&self.stack) }
+    }
+
     /// Part of the stack that rows are over, where a search allows so many lobes: a family always has two, and fewer nodes in place of fewer lobes.
     pub(super) fn varying_of(&self, most: Option<usize>) -> Option<Varying> {
         let fewer = most.map_or(0, |most| LOBES.saturating_sub(most) as u32);
@@ -145,7 +156,7 @@ impl Job for FitJob {
         json!({
             "stack": json::stack(&self.stack),
             "color": json::color(&self.color),
-            "lobes": most_lobes(&self.stack),
+            "lobes": self.most(),
             "excess": EXCESS,
             "rows": rows,
             "paths": paths,
@@ -159,7 +170,7 @@ impl Job for FitJob {
         let Self { stack, color, varying, is_searched } = self;
         let traced = Traced::new(stack, color, *varying, FitSettings::of(*varying));
         let judge = Judge::new(stack, color, *varying);
-        let most = most_lobes(stack);
+        let most = self.most();
         if *is_searched && is_family(*varying) {
             let whole: Varied = traced.fit(most, EXCESS);
             let fits = (0..=LOBES).map(|most| {

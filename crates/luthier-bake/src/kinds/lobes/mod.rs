@@ -109,7 +109,8 @@ pub(crate) fn decide(
         return Ok(None);
     }
     let have_one_width = fits.iter().all(|fits| fits.of(Some(1)).of_one_width.is_some());
-    let steps = (0..=LOBES).map(|most| (most, false)).chain(have_one_width.then_some((1, true)));
+    let most = fits.iter().map(|fits| fits.most()).max().unwrap_or(0);
+    let steps = (0..=most).map(|most| (most, false)).chain(have_one_width.then_some((1, true)));
     let choices: Vec<(usize, bool, usize)> =
         steps.flat_map(|(most, has_one_width)| (0..STEPS.len()).map(move |i| (most, has_one_width, i))).collect();
     let shape_of = |(most, has_one_width, i): (usize, bool, usize)| {

@@ -1,6 +1,8 @@
 //! Shapes of tiles of lobes: parts of rows, steps between rows, layouts.
 
-use luthier_layers::models::lobes::{Family, FitSettings, LOBES, Paint, Row, Varied, Varying, base_below, shown};
+use luthier_layers::models::lobes::{
+    Family, FitSettings, LOBES, LOBES_MAX, Paint, Row, Varied, Varying, base_below, shown,
+};
 use luthier_lut::{Axis, Mapping, RowLayout, TexelFormat};
 use luthier_manifest::{Budget, LobesForm};
 use luthier_material::Material;
@@ -79,7 +81,7 @@ pub(super) fn shape([first, last]: [i32; 2], step: usize, format: TexelFormat) -
 
 /// Parts of rows with so many lobes that the light of a view takes.
 pub(super) fn reads(lobes: usize) -> usize {
-    [1, 3, 4][lobes.min(LOBES)]
+    [1, 3, 4, 6][lobes.min(LOBES_MAX)]
 }
 
 /// Most reads of a texture for a view that take no time of their own: by the costs of the H100 two hide behind the arithmetic of the shader (5.7 ps, 7.2 in a buffer),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use luthier_layers::models::lobes::{Axes, Family, LOBES, Row, Varying};
+use luthier_layers::models::lobes::{Axes, Family, LOBES, LOBES_MAX, Row, Varying};
 use luthier_lut::{Axis, Comparison, ErrorStats, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
 use serde_json::{Value, json};
 
@@ -19,7 +19,7 @@ pub(super) const PER_CELL: u32 = 8;
 /// Rows as parts of four numbers.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Parts {
-    /// With so many lobes, and the light of a base (0 if rows have none) or without its parts.
+    /// With parts of at least so many lobes, and the light of a base (0 if rows have none) or without its parts.
     Lobes(usize, bool),
     /// With one lobe of one width, and the light of a base or without its parts.
     OneWidth(bool),
@@ -51,7 +51,8 @@ impl Parts {
     /// The row of parts, those that a tile has.
     fn read(self, parts: &[[f64; 4]]) -> Row {
         match self {
-            Self::Lobes(_, has_base) | Self::OneWidth(has_base) => Row::of_parts(parts, has_base),
+            Self::Lobes(most, has_base) => Row::within(most, parts, has_base),
+            Self::OneWidth(has_base) => Row::of_parts(parts, has_base),
             Self::Family(family, tail) => family.of_parts(family.first_part(), parts, tail),
         }
     }
@@ -101,7 +102,7 @@ impl Job for LobesJob {
         let layout = match varied.varying() {
             Some(Varying::Family(family)) => Parts::Family(family, 1.0 / varied.stored(0, 0).inverse_tails()[0]),
             _ if is_of_one_width(y) => Parts::OneWidth(y.min < 0.0),
-            _ => Parts::Lobes(most.min(LOBES), y.min < 0.0),
+            _ => Parts::Lobes(most.min(LOBES).max(lobes.rows[0].lobes.len()), y.min < 0.0),
         };
         // Parts of families begin with their own, where those of a base have a place before it.
         let first = match layout {
@@ -168,7 +169,7 @@ impl Job for LobesJob {
         let model = format!(
             "{} fitted to the simulated stack{here}, in half vectors of a medium of index {:.3}{over}; {}; errors are those of energies \
              against the rows before they were rounded",
-            ["no lobe", "one lobe", "two lobes"][lobes.rows[0].lobes.len().min(LOBES)],
+            ["no lobe", "one lobe", "two lobes", "three lobes"][lobes.rows[0].lobes.len().min(LOBES_MAX)],
             lobes.frame.index,
             color_in_words(&self.fit.color)
         );

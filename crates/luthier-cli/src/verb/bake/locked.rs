@@ -1,4 +1,4 @@
-//! The lock beside the materials: decisions of a search that stay until a budget breaks.
+//! The lock beside the materials: decisions of a search that stay until a budget breaks, and numbers of materials.
 
 use std::path::{Path, PathBuf};
 
@@ -14,6 +14,8 @@ pub(super) struct LockFile {
     path: PathBuf,
     text: Option<String>,
     lock: Option<Lock>,
+    /// Names of materials in the order of their numbers.
+    names: Vec<String>,
     /// True where the decisions are made anew.
     is_asked: bool,
 }
@@ -28,16 +30,22 @@ impl LockFile {
         let folder = if first.is_dir() { first } else { first.parent().unwrap_or(Path::new("")) };
         let path = folder.join(NAME);
         let text = if path.exists() { Some(input::text(&path).map_err(files(&path, "read"))?) } else { None };
-        let lock = match &text {
-            Some(text) if !is_asked => Some(Lock::from_json(text).map_err(|reason| {
+        let found = text.as_ref().map(|text| {
+            Lock::from_json(text).map_err(|reason| {
                 let path = path.display();
                 Failure::Input(anyhow::anyhow!(
                     "{path}: it is no lock of luthier: {reason}\nhint: write it anew with --relock"
                 ))
-            })?),
-            _ => None,
+            })
+        });
+        // Decisions are made anew where that is asked for, and numbers stay.
+        let (lock, names) = match found {
+            Some(Ok(lock)) => (Some(lock.clone()).filter(|_| !is_asked), lock.materials),
+            Some(Err(_)) if is_asked => (None, Vec::new()),
+            Some(Err(failure)) => return Err(failure),
+            None => (None, Vec::new()),
         };
-        Ok(Self { path, text, lock, is_asked })
+        Ok(Self { path, text, lock, names, is_asked })
     }
 
     /// The file, if it is there.
@@ -50,16 +58,24 @@ impl LockFile {
         self.text.as_deref().unwrap_or_default()
     }
 
+    /// Names of the materials whose numbers stay, in their order.
+    pub(super) fn names(&self) -> &[String] {
+        &self.names
+    }
+
     /// The decisions that stay.
     pub(super) fn decisions(&self) -> &[Decision] {
         self.lock.as_ref().map_or(&[], |lock| &lock.decisions)
     }
 
-    /// The lock that a bake would write: if a budget broke a decision of the lock, or if a lock was asked for and there is none.
+    /// The lock that a bake would write: if a budget broke a decision of the lock, if the lock lacks a material, or if a lock was asked for.
     pub(super) fn next(&self, manifest: &Manifest) -> Option<Lock> {
         let next = Lock::of(manifest);
         match &self.lock {
-            Some(lock) => (!lock.decides_as(&next)).then_some(next),
+            Some(lock) => {
+                let next = next.after(&self.names);
+                (!lock.decides_as(&next)).then_some(next)
+            }
             None => self.is_asked.then_some(next),
         }
     }
@@ -78,12 +94,16 @@ impl LockFile {
         let text = next.to_json().map_err(|reason| Failure::Input(anyhow::anyhow!("{reason}")))?;
         luthier_export::replace(&self.path, text.as_bytes()).map_err(files(&self.path, "write"))?;
         let path = self.path.display();
-        Ok(Some(if self.is_asked {
-            format!("wrote {path}")
-        } else {
-            format!(
+        let added = next.materials.len().saturating_sub(self.names.len());
+        Ok(Some(match &self.lock {
+            None => format!("wrote {path}"),
+            Some(lock) if lock.serves_as(&next) => {
+                let s = if added == 1 { "" } else { "s" };
+                format!("wrote {path}: {added} material{s} more; the others keep their numbers")
+            }
+            Some(_) => format!(
                 "warning: the tables that {path} decides no longer serve all materials: they were searched anew, and it was written anew"
-            )
+            ),
         }))
     }
 }

@@ -82,6 +82,7 @@ impl<'a> Begun<'a> {
         let forms = options.emission.forms();
         let shading = options.shading.in_forms(&forms);
         let mut sources = Sources::of(found);
+        sources.put_first(lock.names());
         sources.refuse(&shading);
         sources.doubt_energy(&shading);
         let told = sources.materials.iter().flat_map(Source::diagnostics).cloned().collect();
@@ -126,6 +127,7 @@ impl<'a> Begun<'a> {
             targets: options.emission.targets(),
             shading: options.shading.in_forms(&options.emission.forms()),
             functions: options.emission.functions(),
+            names: options.emission.names.names(),
             surfaces: set.surfaces.clone(),
             observer,
             ..Bake::default()

@@ -32,7 +32,7 @@ pub(super) fn refuse_mixture(files: &Files) -> Outcome {
 
 fn director<'a>(options: &BakeOptions, scene: &'a Scene, materials: &'a [Material]) -> Outcome<Director<'a>> {
     let director = Director::new(scene, materials, options.emission.targets(), store()?);
-    let director = director.with_functions(options.emission.functions());
+    let director = director.with_functions(options.emission.functions()).with_names(options.emission.names.names());
     let director = match options.costs_of.load()? {
         Some(device) => director.with_costs(device),
         None => director,

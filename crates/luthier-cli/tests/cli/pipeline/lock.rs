@@ -1,4 +1,4 @@
-//! Locks: tables keep their sizes, axes and formats until a budget breaks.
+//! Locks: tables keep their sizes, axes and formats until a budget breaks, and materials their numbers.
 
 use serde_json::Value;
 
@@ -37,8 +37,12 @@ fn a_lock_keeps_tables_until_their_budget_breaks() {
     assert!(searches.as_array().unwrap().iter().all(|search| search["measured"] == 1), "{searches}");
     // Glass beside glass would have another search; the lock stays.
     workshop.write("a/other.toml", BARE.replace("bare", "other").replace("1.5", "1.7"));
-    workshop.run(&["bake", "a", "--quiet"]).exits(0);
-    assert_eq!((row_size(&workshop), workshop.text("a/luthier.lock")), (small.clone(), lock.clone()));
+    let decisions = |workshop: &Workshop| workshop.json("a/luthier.lock")["decisions"].clone();
+    let first = decisions(&workshop);
+    let run = workshop.run(&["bake", "a", "--quiet"]).exits(0);
+    assert!(run.stderr.contains("wrote a/luthier.lock: 1 material more"), "{}", run.stderr);
+    assert_eq!((row_size(&workshop), decisions(&workshop)), (small.clone(), first));
+    let lock = workshop.text("a/luthier.lock");
     // A film breaks it: the bake says so.
     workshop.write("a/film.toml", FILM);
     let stale = workshop.run(&["bake", "a", "--check"]).exits(1).stdout;
@@ -56,6 +60,50 @@ fn a_lock_keeps_tables_until_their_budget_breaks() {
     std::fs::remove_file(workshop.path("a/other.toml")).unwrap();
     workshop.run(&["bake", "a", "--relock", "--quiet"]).exits(0);
     assert_eq!(row_size(&workshop), small);
+}
+
+/// Names of the materials of a bake, in the order of their numbers.
+fn names(workshop: &Workshop, manifest: &str) -> Vec<String> {
+    let manifest = workshop.json(manifest);
+    let materials = manifest["materials"].as_array().unwrap();
+    materials.iter().map(|material| material["name"].as_str().unwrap().to_owned()).collect()
+}
+
+/// Materials are in the order of their files' names; with a lock, in that of the lock, and new ones come last.
+#[test]
+fn a_material_that_is_added_changes_no_number() {
+    let named = |name: &str| BARE.replace("bare", name);
+    let workshop = Workshop::with(&[("a/gold.toml", &named("gold")), ("a/zinc.toml", &named("zinc"))]);
+    workshop.run(&["bake", "a", "--relock", "--quiet"]).exits(0);
+    assert_eq!(names(&workshop, "out/manifest.json"), ["gold", "zinc"]);
+    workshop.write("a/iron.toml", named("iron"));
+    let stale = workshop.run(&["bake", "a", "--check"]).exits(1).stdout;
+    assert!(stale.contains("stale: a/luthier.lock"), "{stale}");
+    workshop.run(&["bake", "a", "--quiet"]).exits(0);
+    workshop.write("a/brass.toml", named("brass"));
+    workshop.run(&["bake", "a", "--quiet"]).exits(0);
+    let all = ["gold", "zinc", "iron", "brass"];
+    assert_eq!(names(&workshop, "out/manifest.json"), all);
+    assert!(workshop.text("out/shaders/baked.wgsl").contains("const LUTHIER_MATERIAL_BRASS: u32 = 3u;"));
+    workshop.run(&["bake", "a", "--check"]).exits(0);
+    // A bake of some of them forgets no other.
+    let lock = workshop.text("a/luthier.lock");
+    workshop.run(&["bake", "a/iron.toml", "a/gold.toml", "--out", "some", "--quiet"]).exits(0);
+    assert_eq!(names(&workshop, "some/manifest.json"), ["gold", "iron"]);
+    assert_eq!(workshop.text("a/luthier.lock"), lock);
+    // A new search keeps numbers, and drops the names of materials that are gone.
+    std::fs::remove_file(workshop.path("a/zinc.toml")).unwrap();
+    workshop.run(&["bake", "a", "--relock", "--quiet"]).exits(0);
+    assert_eq!(names(&workshop, "out/manifest.json"), ["gold", "iron", "brass"]);
+    assert_eq!(workshop.json("a/luthier.lock")["materials"], serde_json::json!(["gold", "iron", "brass"]));
+    // Two folders with equal files have equal bakes.
+    for name in ["gold", "iron", "brass"] {
+        workshop.write(&format!("b/{name}.toml"), named(name));
+    }
+    workshop.write("b/luthier.lock", workshop.text("a/luthier.lock"));
+    workshop.run(&["bake", "b", "--out", "other", "--quiet"]).exits(0);
+    assert_eq!(workshop.tree("other/tables"), workshop.tree("out/tables"));
+    assert_eq!(workshop.tree("other/shaders"), workshop.tree("out/shaders"));
 }
 
 /// Such a row does not count for the search, and does not break the lock that it is in.

@@ -156,6 +156,15 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     value += prepared.second_strength * (luthier_half_slope_density(prepared.second_shape, place.xy) * place.z);
     //? else
     value += prepared.second_strength * luthier_density_below(prepared.second_shape, sum_below);
+    //? lobes_mixed, three_lobes
+    if prepared.third_shape.peak == 0.0 {
+        return value;
+    }
+    //? three_lobes
+    //? !lobes_family|~lobes_family|lobes_tails
+    value += prepared.third_strength * (luthier_half_slope_density(prepared.third_shape, place.xy) * place.z);
+    //? else
+    value += prepared.third_strength * luthier_density_below(prepared.third_shape, sum_below);
     return value;
 }
 
@@ -177,6 +186,8 @@ fn luthier_albedo_lobes(prepared: LuthierPreparedLobes) -> vec3<f32> {
         albedo -= luthier_lost_below(prepared.first_shape, luthier_lobe_below(prepared, 0u).energy);
         //? two_lobes
         albedo -= luthier_lost_below(prepared.second_shape, luthier_lobe_below(prepared, 1u).energy);
+        //? three_lobes
+        albedo -= luthier_lost_below(prepared.third_shape, luthier_lobe_below(prepared, 2u).energy);
     }
     //? lobes_base, !lobes_family
     //? base_color|lobes_lean
@@ -204,6 +215,10 @@ fn luthier_share_left(shape: LuthierLobeShape, share: f32) -> f32 {
 }
 
 fn luthier_lobe_below(prepared: LuthierPreparedLobes, lobe: u32) -> LuthierBelow {
+    //? three_lobes
+    if lobe == 2u {
+        return LuthierBelow(prepared.third_strength * luthier_share_left(prepared.third_shape, prepared.third_share), prepared.third_shape);
+    }
     //? two_lobes
     {
         //? lobes_family

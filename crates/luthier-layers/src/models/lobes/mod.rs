@@ -241,13 +241,22 @@ const INFO: ModelInfo = ModelInfo {
     inputs: &[],
 };
 
-/// The most lobes of a bake.
+/// The most lobes of a bake that no limit on errors bounds, and of stacks whose rows are over more than the view.
 pub const LOBES: usize = 2;
+
+/// The most lobes of a bake with limits on errors.
+pub const LOBES_MAX: usize = 3;
 
 /// The most lobes of a bake for a stack: none for one interface. Light that bounces between its facets, or comes back through them, is wide. The
 /// remainder alone is within an albedo error of 0.01 (`tests/layers/bounces.rs`), and saves two reads.
 pub fn most_lobes(stack: &Stack) -> usize {
     if stack.layers.len() > 1 { LOBES } else { 0 }
+}
+
+/// The most lobes that a search tries for a stack: [`LOBES_MAX`] where rows are over the view alone, and [`most_lobes`] elsewhere. A third lobe costs two reads.
+pub fn most_searched(stack: &Stack, varying: Option<Varying>) -> usize {
+    let is_alone = varying.is_none() && Varying::axes(varying, stack).is_none();
+    if is_alone && most_lobes(stack) == LOBES { LOBES_MAX } else { most_lobes(stack) }
 }
 
 /// Excess error that a bake accepts for fewer lobes, see [`Simulation::fit_fewest`].

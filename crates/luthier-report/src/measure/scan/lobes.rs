@@ -1,6 +1,7 @@
 //! Scan of rows of lobes against rows that are fitted anew.
 
 use glam::DVec3;
+use luthier_layers::models::lobes::LOBES;
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::twins::terms::Exact;
 
@@ -8,7 +9,7 @@ use super::{Measured, Scan, User, coordinates};
 use crate::measure::readers::run;
 use crate::measure::scan::report::Curves;
 use crate::measure::subject::{Subject, Table};
-use crate::measure::table_terms::{TableTerms, Weights};
+use crate::measure::table_terms::{TableTerms, Weights, most_lobes};
 
 /// Points in every interval between nodes.
 const POINTS_PER_CELL: u32 = 4;
@@ -32,11 +33,12 @@ pub(super) fn scan(
     let number = (tile - first) as usize;
     // Rows of a family have numbers in place of energies: those of the nominal place are compared, in its colours.
     let of_family = entry.constants.lobes.and_then(|lobes| lobes.family());
+    let most = entry.constants.lobes.as_ref().map_or(LOBES, most_lobes);
     let painted = of_family.map(|_| TableTerms::new(subject, material, Weights::EightBit)).transpose().ok()?;
     for u in coordinates(x, POINTS_PER_CELL) {
         let c = x.decode(u);
         let (number, sampled) = match &painted {
-            None => (number, table.row(tile, c, Weights::EightBit).energies()),
+            None => (number, table.row(most, tile, c, Weights::EightBit).energies()),
             Some(terms) => {
                 let cos_theta = lobes.axis.cos_theta(lobes.axis.place_at(c));
                 let wo = DVec3::new((1.0 - cos_theta * cos_theta).max(0.0).sqrt(), 0.0, cos_theta);

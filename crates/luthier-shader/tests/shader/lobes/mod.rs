@@ -5,6 +5,7 @@ mod normals;
 mod one_width;
 mod patina;
 mod sides;
+mod three_lobes;
 
 use std::collections::BTreeMap;
 
@@ -20,6 +21,7 @@ use luthier_optics::stack::Distribution;
 use luthier_shader::{Form, MaterialSet, ShaderError, TableFace, Target, emit};
 
 use self::patina::covered_rows;
+use self::three_lobes::rows_of_three;
 use crate::arithmetic::directions;
 use crate::features::with_map;
 use crate::machine::{Machine, Value, vector};
@@ -479,6 +481,7 @@ fn directions_are_drawn_as_their_density_says() {
     const SECTORS: usize = 6;
     for (name, coat, axes, (layout, image)) in [
         ("lobes", [0.3; 2], None, rows()),
+        ("lobes", [0.3; 2], None, rows_of_three()),
         ("lobes-inward", [0.2; 2], None, rows()),
         ("lobes-axes", [0.1, 0.4], Some(AxesRecord { turn: [0.6, 0.8], is_mirrored: false, tiles: 8 }), turned_rows()),
         ("lobes-patina", [0.3; 2], None, covered_rows()),
@@ -494,7 +497,7 @@ fn directions_are_drawn_as_their_density_says() {
             critical_cot_sq: 0.0,
             critical_width: 0.0,
             critical_plain_share: 0.0,
-            lobes: 2,
+            lobes: if layout.y.as_ref().unwrap().max == 7.0 { 3 } else { 2 },
             inverse_tails: [1.0, 40.0],
             rise: None,
             varying,

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use crate::scenes::{sets, tables};
 use luthier_lut::TableKind;
-use luthier_manifest::FunctionGroup;
+use luthier_manifest::{FunctionGroup, LAYER_WORDS, MATERIAL_WORDS};
 use luthier_shader::{Form, MaterialSet, RESERVED_BINDINGS, bindings};
 
 /// Bindings of the environment.
@@ -52,9 +52,31 @@ fn numbers() -> String {
     out
 }
 
+/// Rows of the table below a heading in the documentation of a source file of luthier-manifest, without links.
+fn rows(file: &str, heading: &str) -> Vec<String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../luthier-manifest/src").join(file);
+    let text = fs::read_to_string(&path).unwrap();
+    let lines = text.lines().map(str::trim_start).skip_while(|line| *line != format!("/// {heading}"));
+    let rows = lines.map_while(|line| line.strip_prefix("/// |"));
+    rows.skip(2).map(|row| format!("|{row}\n").replace("[`", "`").replace("`]", "`")).collect()
+}
+
+/// Every word of the material buffer, as the functions that write them are documented.
+fn words_of_buffer() -> String {
+    let heading = "| header word | x, y, z, w |";
+    let mut header = rows("buffer.rs", heading);
+    // The other words are those of the constants.
+    header.truncate(1);
+    header.extend(rows("constants/mod.rs", heading));
+    let layer = rows("record.rs", "| word | x, y, z, w |");
+    assert_eq!([header.len(), layer.len()], [MATERIAL_WORDS, LAYER_WORDS]);
+    let table = |word: &str, rows: Vec<String>| format!("| {word} | x, y, z, w |\n|---|---|\n{}", rows.concat());
+    format!("{}\n{}", table("word of a material", header), table("word of a layer", layer))
+}
+
 /// The pages of a repository that have such parts, and the parts.
-fn parts() -> [(&'static str, String); 1] {
-    [("docs/bindings.md", numbers())]
+fn parts() -> [(&'static str, String); 2] {
+    [("docs/bindings.md", numbers()), ("docs/manifest.md", words_of_buffer())]
 }
 
 #[test]

@@ -1,7 +1,13 @@
 /// Ways in which a material is drawn from, and their chances.
 struct LuthierLobesDraw {
-    /// Probabilities of the first facet, of the lobes and of the wide remainder, times their sum.
+    /// Probabilities of the first facet, of two lobes and of the wide remainder, times the sum of all.
     chances: vec4<f32>,
+    //? three_lobes
+    {
+        /// That of the third lobe, times the sum of all.
+        third_chance: f32,
+        third: LuthierLobeDraw,
+    }
     wide: vec3<f32>,
     //? one_lobe|two_lobes
     first: LuthierLobeDraw,
@@ -29,12 +35,26 @@ fn luthier_lobes_draw(prepared: LuthierPreparedLobes) -> LuthierLobesDraw {
         given.second = luthier_lobe_draw(prepared, prepared.second_shape);
         given.chances.z = max(dot(prepared.second_strength, third) * given.second.chance, 0.0);
     }
+    //? three_lobes
+    {
+        facets -= dot(luthier_lobe_below(prepared, 2u).energy, third);
+        given.third = luthier_lobe_draw(prepared, prepared.third_shape);
+        given.third_chance = max(dot(prepared.third_strength, third) * given.third.chance, 0.0);
+    }
     // Factors are bounds on weights. The remainder takes some draws over from facets: see the f64 twin.
     let boosted = 1.3 * max(facets, 0.0);
     given.chances.x = 0.96 * boosted;
     // A material that reflects nothing has a remainder without light.
     given.chances.w = max(wide, 0.0) * given.wide.z + 0.04 * boosted + 1e-6;
     return given;
+}
+
+/// Sum of the chances of the first facet, of the lobes and of the wide remainder.
+fn luthier_total_chance(given: LuthierLobesDraw) -> f32 {
+    //? three_lobes
+    return dot(given.chances, vec4<f32>(1.0)) + given.third_chance;
+    //? else
+    return dot(given.chances, vec4<f32>(1.0));
 }
 
 /// Density in solid angle with which `luthier_draw_lobes` draws a direction above the horizon.
@@ -46,28 +66,34 @@ fn luthier_density_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> f32 {
     density += chances.y * luthier_lobe_density(prepared, given.first, prepared.first_shape, wi);
     //? two_lobes
     density += chances.z * luthier_lobe_density(prepared, given.second, prepared.second_shape, wi);
+    //? three_lobes
+    density += given.third_chance * luthier_lobe_density(prepared, given.third, prepared.third_shape, wi);
     //? lobes_patina
     {
         let bare = luthier_bare_energy(prepared);
         density += bare * luthier_facet_density(luthier_bare_lobes(prepared), wi);
-        return density / (dot(chances, vec4<f32>(1.0)) + bare);
+        return density / (luthier_total_chance(given) + bare);
     }
     //? else
-    return density / dot(chances, vec4<f32>(1.0));
+    return density / luthier_total_chance(given);
 }
 
-/// Direction and part of a draw, without its density and weight: 0 the first facet, that of a bare layer too, 1 and 2 the lobes, 3 the wide remainder.
+/// Direction and part of a draw, without its density and weight: 0 the first facet, that of a bare layer too, 1 and 2 the lobes, 3 the wide remainder, 4 a third lobe.
 fn luthier_draw_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSample {
     let given = luthier_lobes_draw(prepared);
     let chances = given.chances;
     //? lobes_patina
     {
-        let total = dot(chances, vec4<f32>(1.0));
+        let total = luthier_total_chance(given);
         let choice = u.x * (total + luthier_bare_energy(prepared));
     }
     //? else
-    let choice = u.x * dot(chances, vec4<f32>(1.0));
-    let of_wide = (choice - (chances.x + chances.y + chances.z)) / chances.w;
+    let choice = u.x * luthier_total_chance(given);
+    let lobes = chances.x + chances.y + chances.z;
+    //? three_lobes
+    let of_wide = (choice - (lobes + given.third_chance)) / chances.w;
+    //? else
+    let of_wide = (choice - lobes) / chances.w;
     var drawn = LuthierSample(luthier_draw_wide(given.wide, vec3<f32>(saturate(of_wide), u.yz)), 0.0, vec3<f32>(0.0), 3u);
     if choice < chances.x {
         drawn.wi = luthier_draw_facet(prepared, vec3<f32>(choice / chances.x, u.yz));
@@ -90,6 +116,11 @@ fn luthier_draw_lobes(prepared: LuthierPreparedLobes, u: vec3<f32>) -> LuthierSa
     if choice >= first && choice < first + chances.z {
         drawn.wi = luthier_sample_lobe(prepared, given.second, prepared.second_shape, u.yz);
         drawn.part = 2u;
+    }
+    //? three_lobes
+    if choice >= lobes && choice < lobes + given.third_chance {
+        drawn.wi = luthier_sample_lobe(prepared, given.third, prepared.third_shape, u.yz);
+        drawn.part = 4u;
     }
     return drawn;
 }

@@ -69,6 +69,12 @@ fn luthier_environment_lobes(prepared: LuthierPreparedLobes, frame: mat3x3<f32>,
         rest -= second.energy;
         total += second.energy * luthier_shown_mean(luthier_shown_below(prepared, second.shape), prepared, frame, turned);
     }
+    //? three_lobes
+    {
+        let third = luthier_lobe_below(prepared, 2u);
+        rest -= third.energy;
+        total += third.energy * luthier_shown_mean(luthier_shown_below(prepared, third.shape), prepared, frame, turned);
+    }
     //? lobes_patina
     {
         // The bare layer has the colour of its reflectance in the mirrored direction.

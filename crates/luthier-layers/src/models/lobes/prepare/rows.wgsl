@@ -1,4 +1,7 @@
 /// Lobes from below that rows have.
+//? three_lobes
+const LUTHIER_LOBES: u32 = 3u;
+//? else
 //? two_lobes
 const LUTHIER_LOBES: u32 = 2u;
 //? else
@@ -6,11 +9,11 @@ const LUTHIER_LOBES: u32 = 2u;
 const LUTHIER_LOBES: u32 = 1u;
 //? else
 const LUTHIER_LOBES: u32 = 0u;
-/// The part of rows that is the albedo.
+/// The part of rows that is the albedo. A third lobe has the parts after it.
 //? lobes_one_width
 const LUTHIER_LOBES_ALBEDO: f32 = 2.0;
 //? else
-const LUTHIER_LOBES_ALBEDO: f32 = f32(1u + 2u * LUTHIER_LOBES);
+const LUTHIER_LOBES_ALBEDO: f32 = f32(1u + 2u * min(LUTHIER_LOBES, 2u));
 /// The part of rows of two lobes that has their decays and shares.
 const LUTHIER_LOBES_SHARES: f32 = 4.0;
 /// The parts of rows that are what layers send back to a diffuse base, and the light of that base.
@@ -90,6 +93,13 @@ struct LuthierPreparedLobes {
     /// Energy of the second lobe over its share above the horizon, RGB.
     second_strength: vec3<f32>,
     second_shape: LuthierLobeShape,
+    //? three_lobes
+    {
+        /// Energy of the third lobe over its share above the horizon, RGB, and that share.
+        third_strength: vec3<f32>,
+        third_share: f32,
+        third_shape: LuthierLobeShape,
+    }
 }
 
 //? beckmann
@@ -521,6 +531,8 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
             prepared.first_shape = luthier_dark_lobe();
             //? two_lobes
             prepared.second_shape = luthier_dark_lobe();
+            //? three_lobes
+            prepared.third_shape = luthier_dark_lobe();
         }
         //? lobes_mixed
         if lobes < 0.5 {
@@ -635,6 +647,35 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         }
         //? else
         prepared.second_shape = luthier_with_peak(second_shape);
+    }
+    //? three_lobes
+    {
+        //? lobes_mixed
+        if lobes < 2.5 {
+            return prepared;
+        }
+        // Rows over the view alone have a third lobe: no channel has rows of its own, and lobes are in the plane of the eye.
+        let third = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO + 1.0);
+        let third_numbers = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_ALBEDO + 2.0);
+        prepared.third_strength = third.rgb;
+        prepared.third_share = third_numbers.w;
+        //? lobes_axes
+        let third_shape = luthier_lobe_in_axes(third.a, third_numbers.xyz, 0.0, eye, false);
+        //? else
+        let third_shape = luthier_lobe_shape(third.a, third_numbers.xyz, sin_theta);
+        //? place
+        {
+            let third_spread = luthier_spread(third_shape, spread, unresolved);
+            //? lobes_tilted
+            {
+                prepared.third_shape = luthier_with_peak(luthier_lobe_about(third_spread, tilt, prepared.third_share, disc));
+                prepared.third_strength *= prepared.third_shape.gain;
+            }
+            //? else
+            prepared.third_shape = luthier_with_peak(third_spread);
+        }
+        //? else
+        prepared.third_shape = luthier_with_peak(third_shape);
     }
     return prepared;
 }

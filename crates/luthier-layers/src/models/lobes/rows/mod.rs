@@ -340,9 +340,11 @@ impl Row {
     /// | 2, with two lobes | strength of the second lobe RGB, shift |
     /// | 3, with two lobes | sharpness of the first lobe, then of the second |
     /// | 4, with two lobes | 1 over the tail and share of the first lobe, then of the second |
-    /// | last | directional albedo RGB, shear of the second lobe |
+    /// | last of so many lobes | directional albedo RGB, shear of the second lobe |
+    /// | 6, with three lobes | strength of the third lobe RGB, shift |
+    /// | 7, with three lobes | its sharpness along the plane of the eye, and across it; 1 over the tail; share |
     ///
-    /// Rows with more lobes, which no bake has, have further shapes after part 4 in the same way.
+    /// So a row of three lobes begins with that of two. A third lobe has no shear: stacks with axes have two lobes.
     ///
     /// Tails hold at all views of a tile. A shader that has those of the material as numbers ([`Self::inverse_tails`]) does not read part 4.
     ///
@@ -356,21 +358,22 @@ impl Row {
             parts.extend([part(internal, b), part(energy, a)]);
         }
         parts.push(part(self.wide, shear_first));
-        parts.extend(self.lobes.iter().map(|lobe| part(lobe.strength, lobe.shift)));
-        let shapes = self.lobes.iter().map(|lobe| {
+        let (paired, further) = self.lobes.split_at(self.lobes.len().min(LOBES));
+        let light = |lobe: &Lobe| part(lobe.strength, lobe.shift);
+        let shape = |lobe: &Lobe| {
             let tail = lobe.tail.max(TAIL_MIN);
             let [x, y] = lobe.sharpness.map(|sharpness| sharpness * tail.sqrt());
             [x, y, 1.0 / tail, lobe.share]
-        });
-        for pair in shapes.collect::<Vec<_>>().chunks(2) {
-            match *pair {
-                [[a, b, first_tail, first_share], [c, d, second_tail, second_share]] => {
-                    parts.extend([[a, b, c, d], [first_tail, first_share, second_tail, second_share]]);
-                }
-                _ => parts.extend(pair),
+        };
+        parts.extend(paired.iter().map(light));
+        match *paired.iter().map(shape).collect::<Vec<_>>() {
+            [[a, b, first_tail, first_share], [c, d, second_tail, second_share]] => {
+                parts.extend([[a, b, c, d], [first_tail, first_share, second_tail, second_share]]);
             }
+            ref alone => parts.extend(alone),
         }
         parts.push(part(self.albedo_dir, shear_second));
+        parts.extend(further.iter().flat_map(|lobe| [light(lobe), shape(lobe)]));
         parts
     }
 
@@ -388,15 +391,16 @@ impl Row {
         base.into_iter().flatten().chain(own).collect()
     }
 
-    /// The row of parts. With `has_base`, the first two belong to a diffuse base. Three parts are those of [`OneWidth`]. Parts beyond those of [`LOBES`] lobes are of families beside it.
+    /// The row of parts with at most two lobes. With `has_base`, the first two parts belong to a diffuse base. Three parts are those of [`OneWidth`].
     pub fn of_parts(parts: &[[f64; 4]], has_base: bool) -> Self {
         Self::within(LOBES, parts, has_base)
     }
 
-    /// [`Self::of_parts`] with at most so many lobes.
-    fn within(most: usize, parts: &[[f64; 4]], has_base: bool) -> Self {
+    /// [`Self::of_parts`] with at most so many lobes. Parts beyond theirs are of other rows beside it.
+    pub fn within(most: usize, parts: &[[f64; 4]], has_base: bool) -> Self {
         let (of_base, parts) = parts.split_at(if has_base { Self::BASE_PARTS.min(parts.len()) } else { 0 });
         let parts = &parts[..parts.len().min(Self::parts(most))];
+        let (parts, further) = parts.split_at(parts.len().min(Self::parts(LOBES)));
         let falloff = [1, 0].map(|part: usize| of_base.get(part).map_or(0.0, |part| part[3]));
         let base = BaseLight {
             energy: rgb(of_base.get(1)),
@@ -408,16 +412,17 @@ impl Row {
         let inner = parts.get(1..parts.len().saturating_sub(1)).unwrap_or_default();
         let shears = [parts.first(), parts.last()].map(|part| part.map_or(0.0, |part| part[3]));
         let (strengths, shapes) = inner.split_at(inner.len().div_ceil(2));
-        let pairs = shapes.chunks(2).flat_map(|pair| match *pair {
+        let shapes = match *shapes {
             [[a, b, c, d], [first_tail, first_share, second_tail, second_share]] => {
                 vec![[a, b, first_tail, first_share], [c, d, second_tail, second_share]]
             }
-            _ => pair.to_vec(),
-        });
-        let shaped: Vec<([f64; 4], [f64; 4])> = match *inner {
-            [strength] => vec![(strength, [shears[0], shears[0], 1.0, shears[1]])],
-            _ => strengths.iter().copied().zip(pairs).collect(),
+            _ => shapes.to_vec(),
         };
+        let mut shaped: Vec<([f64; 4], [f64; 4])> = match *inner {
+            [strength] => vec![(strength, [shears[0], shears[0], 1.0, shears[1]])],
+            _ => strengths.iter().copied().zip(shapes).collect(),
+        };
+        shaped.extend(further.chunks_exact(2).map(|own| (own[0], own[1])));
         let shears = if inner.len() == 1 { [0.0; 2] } else { shears };
         let lobes = shaped.into_iter().zip(shears.into_iter().chain(std::iter::repeat(0.0))).map(
             |((strength, [x, y, inverse_tail, share]), shear)| {
@@ -614,7 +619,7 @@ mod tests {
                 let (parts, of_base) = (row.to_parts(), base.map_or(0, |_| Row::BASE_PARTS));
                 let count = Row::parts(row.lobes.len()) + of_base;
                 assert_eq!((parts.len(), &Row::of_parts(&parts, base.is_some())), (count, &row));
-                // Beside a family rows of two lobes have parts that are not theirs.
+                // Beside families and rows of three lobes those of two have parts that are not theirs.
                 if row.lobes.len() == LOBES {
                     let beside = [parts, vec![[7.0; 4]; 2]].concat();
                     assert_eq!(Row::of_parts(&beside, base.is_some()), row);
@@ -623,7 +628,7 @@ mod tests {
         }
     }
 
-    /// Pages try more lobes than bakes have.
+    /// Rows of three lobes begin with those of two.
     #[test]
     fn rows_of_three_lobes_mix() {
         let lobe = |k: f64| Lobe {
