@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Checks what programs without luthier's code have: examples/c and examples/shaders. Compiles luthier.h as C99 and C++11, gives it faulty files under sanitisers,
 # compares its JSON with Python's and the pictures of its ball with those of `luthier preview`, and compiles the fragment shaders for Vulkan.
-#   scripts/c-host.sh            installs on Debian and its relatives what it needs; elsewhere it says what is missing
+#   scripts/c-host.sh            all; installs on Debian and its relatives what it needs, and elsewhere says what is missing
+#   scripts/c-host.sh --quick    one bake of one material, and one picture
 # Pictures are left in target/c-host/. The environment variable LUTHIER names the program that bakes, with `preview`; by default cargo builds it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -48,17 +49,19 @@ warnings=(-std=c99 -Wall -Wextra -Wshadow -Werror)
 gcc "${warnings[@]}" -O1 examples/c/ball.c -o "$out/ball" -lEGL -lOpenGL
 gcc "${warnings[@]}" -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all examples/c/tests.c -o "$out/tests"
 
+# Tables of all kinds, layouts of rows of lobes, and formats that material files may ask for.
+materials=(materials/papers/{car-paint,granier-film,yamaguchi-brushed}.toml materials/soap-film.toml)
+layouts=(filtered steps)
+formats=(fresnel:rgba8unorm fresnel:rgba16unorm fresnel:rgba32float distribution:r16float distribution:r32float fgd:bc6h-rgb-ufloat)
+if [ "${1-}" = --quick ]; then materials=(materials/papers/car-paint.toml) layouts=() formats=(); fi
+
 step "bakes"
 languages=(--no-zstd --target wgsl,glsl450,hlsl --form baked --quiet)
-# Tables of six kinds.
-materials=(materials/papers/{car-paint,granier-film,yamaguchi-brushed}.toml materials/soap-film.toml)
 luthier bake "${materials[@]}" "${languages[@]}" --functions surface --out "$out/kinds"
 luthier bake materials/papers/car-paint.toml "${languages[@]}" --out "$out/eval"
-for layout in filtered steps; do
+for layout in "${layouts[@]}"; do
   luthier bake materials/papers/car-paint.toml --model lobes --layout "$layout" "${languages[@]}" --functions surface --out "$out/$layout"
 done
-# Formats that material files may ask for.
-formats=(fresnel:rgba8unorm fresnel:rgba16unorm fresnel:rgba32float distribution:r16float distribution:r32float fgd:bc6h-rgb-ufloat)
 for format in "${formats[@]}"; do
   name=${format/:/-}
   case $format in fresnel:*) paper=car-paint ;; distribution:*) paper=granier-film ;; fgd:*) paper=yamaguchi-brushed ;; esac
@@ -69,7 +72,8 @@ for format in "${formats[@]}"; do
 done
 
 step "faulty files, under the sanitisers of addresses, leaks and undefined behaviour"
-"$out/tests" "$out/eval" "$out/steps"
+small=(eval "${layouts[@]:1}")
+"$out/tests" "${small[@]/#/$out/}"
 
 step "JSON as Python reads it"
 mkdir -p "$out/texts"
@@ -83,7 +87,7 @@ manifest = {'schema': 4, 'materials': [], 'tables': [], 'shaders': [], 'bindings
 text = json.dumps(manifest)[:-1] + ', "plain": ' + json.dumps(texts, ensure_ascii=False, indent=3) + '}'
 open(sys.argv[1], 'w', encoding='utf-8').write(text)
 PYTHON
-for bake in texts kinds steps; do
+for bake in texts kinds "${small[@]}"; do
   "$out/tests" --json "$out/$bake" >"$out/$bake.values"
   python3 - "$out/$bake/manifest.json" >"$out/$bake.expected" <<'PYTHON'
 import json, sys
@@ -118,8 +122,8 @@ compare() {
   "$out/ball" "$out/$1" "$2" "$out/$name-ball.ppm" >"$out/driver"
   python3 examples/c/difference.py "$out/$name-preview.png" "$out/$name-ball.ppm" "${@:3}"
 }
-for name in car-paint granier-film yamaguchi-brushed soap-film; do compare kinds "$name" "${limits[@]}"; done
-for layout in filtered steps; do compare "$layout" car-paint "${limits[@]}"; done
+for file in "${materials[@]}"; do compare kinds "$(basename "$file" .toml)" "${limits[@]}"; done
+for layout in "${layouts[@]}"; do compare "$layout" car-paint "${limits[@]}"; done
 for format in "${formats[@]}"; do
   case $format in fresnel:*) paper=car-paint ;; distribution:*) paper=granier-film ;; fgd:*) paper=yamaguchi-brushed ;; esac
   compare "${format/:/-}" "$paper" "${limits[@]}"
@@ -131,7 +135,7 @@ if "$out/ball" "$out/kinds" no-such-material "$out/none.ppm" 2>"$out/refused"; t
 grep -q 'no material no-such-material' "$out/refused"
 
 step "fragment shaders for Vulkan, from GLSL and from HLSL"
-for bake in kinds eval filtered steps; do
+for bake in kinds eval "${layouts[@]}"; do
   glslangValidator -V -I"$out/$bake/shaders" examples/shaders/ball.frag -o "$out/glsl.spv"
   glslangValidator -D -V -S frag -e main -I"$out/$bake/shaders" examples/shaders/ball.hlsl -o "$out/hlsl.spv"
   for language in glsl hlsl; do spirv-val --target-env vulkan1.1 "$out/$language.spv"; done

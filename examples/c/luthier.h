@@ -184,7 +184,7 @@ static const char *luthier__string(luthier_bake *bake, const luthier_json *at, c
 static uint64_t luthier__whole(luthier_bake *bake, const luthier_json *at, const char *path) {
     const char *text = luthier__want(bake, at, path, '0')->text;
     char *end = NULL; const uint64_t whole = strtoull(text, &end, 10);
-    if (*text == '-' || (*end && strchr("+-.eE", *end))) luthier__fail(bake, "manifest.json", "no whole number: ", path);
+    if (*text == '-' || whole > 0xffffffff || (*end && strchr("+-.eE", *end))) luthier__fail(bake, "manifest.json", "no whole number of 32 bits: ", path);
     return whole;
 }
 

@@ -208,7 +208,8 @@ static void mutations(int *refused, int *read) {
 static int hostile_manifests(void) {
     static const struct { const char *text, *error; } cases[] = {
         { "", "no value in line 1" }, { "4", "missing, or of another type: schema" }, { "[]", "schema" }, { "nul", "no value" },
-        { "{\"schema\": 3}", "not of schema 4" }, { "{\"schema\": 4.5}", "no whole number: schema" }, { "{\"schema\": -4}", "no whole number" },
+        { "{\"schema\": 3}", "not of schema 4" }, { "{\"schema\": 4.5}", "no whole number of 32 bits: schema" }, { "{\"schema\": -4}", "no whole number" },
+        { "{\"schema\": 4294967300}", "no whole number of 32 bits: schema" }, { "{\"schema\": 99999999999999999999999}", "no whole number" },
         { "{\"schema\": \"4\"}", "another type: schema" }, { "{\"schema\": 4}", "materials" }, { "{\"schema\": 4} 5", "more than one value" },
         { "{\"schema\": 4,}", "no name and colon" }, { "{\"schema\"\n 4}", "no name and colon in line 2" }, { "{\"a\": \"b", "a text without an end" },
         { "{\"a\": \"b\\", "a text without an end" }, { "{\"a\": \"\n\"}", "a text without an end" }, { "{\"a\": \"\1\"}", "a text without an end" },
