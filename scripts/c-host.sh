@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # Checks what programs without luthier's code have: examples/c and examples/shaders. Compiles luthier.h as C99 and C++11, gives it faulty files under sanitisers,
-# compares its JSON with Python's and the pictures of its ball with those of `luthier preview`, and compiles the fragment shaders for Vulkan.
+# compares its JSON with Python's and the pictures of its ball with those of `luthier preview`, and compiles the fragment shaders for Vulkan and runs them in OpenGL.
 #   scripts/c-host.sh            all; installs on Debian and its relatives what it needs, and elsewhere says what is missing
 #   scripts/c-host.sh --quick    one bake of one material, and one picture
 # Pictures are left in target/c-host/. The environment variable LUTHIER names the program that bakes, with `preview`; by default cargo builds it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-packages=(gcc g++ libc6-dev libegl-dev libgl-dev libopengl-dev libegl-mesa0 libgl1-mesa-dri mesa-vulkan-drivers libvulkan1 glslang-tools spirv-tools python3)
+packages=(gcc g++ libc6-dev libegl-dev libgl-dev libopengl-dev libegl-mesa0 libgl1-mesa-dri mesa-vulkan-drivers libvulkan1 glslang-tools spirv-tools spirv-cross python3)
 missing() {
-  for program in gcc g++ glslangValidator spirv-val python3; do command -v "$program" >/dev/null || echo "$program"; done
+  for program in gcc g++ glslangValidator spirv-val spirv-cross python3; do command -v "$program" >/dev/null || echo "$program"; done
   for header in EGL/egl.h GL/glcorearb.h; do [ -e "/usr/include/$header" ] || echo "$header"; done
   for library in libEGL libOpenGL libEGL_mesa libvulkan; do ldconfig -p 2>/dev/null | grep "$library\.so" >/dev/null || echo "$library"; done
 }
@@ -47,6 +47,7 @@ gcc -x c -std=c99 "${strict[@]}" examples/c/luthier.h
 g++ -x c++ -std=c++11 "${strict[@]}" examples/c/luthier.h
 warnings=(-std=c99 -Wall -Wextra -Wshadow -Werror)
 gcc "${warnings[@]}" -O1 examples/c/ball.c -o "$out/ball" -lEGL -lOpenGL
+gcc "${warnings[@]}" -O1 examples/shaders/run.c -o "$out/run" -lEGL -lOpenGL
 gcc "${warnings[@]}" -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all examples/c/tests.c -o "$out/tests"
 
 # Tables of all kinds, layouts of rows of lobes, and formats that material files may ask for.
@@ -61,6 +62,7 @@ luthier bake "${materials[@]}" "${languages[@]}" --functions surface --out "$out
 luthier bake materials/papers/car-paint.toml "${languages[@]}" --out "$out/eval"
 for layout in "${layouts[@]}"; do
   luthier bake materials/papers/car-paint.toml --model lobes --layout "$layout" "${languages[@]}" --functions surface --out "$out/$layout"
+  luthier bake materials/papers/car-paint.toml --model lobes --layout "$layout" "${languages[@]}" --out "$out/eval-$layout"
 done
 for format in "${formats[@]}"; do
   name=${format/:/-}
@@ -135,8 +137,20 @@ if "$out/ball" "$out/kinds" no-such-material "$out/none.ppm" 2>"$out/refused"; t
 grep -q 'no material no-such-material' "$out/refused"
 
 step "fragment shaders for Vulkan, from GLSL and from HLSL"
-for bake in kinds eval "${layouts[@]}"; do
-  glslangValidator -V -I"$out/$bake/shaders" examples/shaders/ball.frag -o "$out/glsl.spv"
-  glslangValidator -D -V -S frag -e main -I"$out/$bake/shaders" examples/shaders/ball.hlsl -o "$out/hlsl.spv"
-  for language in glsl hlsl; do spirv-val --target-env vulkan1.1 "$out/$language.spv"; done
+# shaders BAKE: their SPIR-V.
+shaders() {
+  glslangValidator -V -I"$out/$1/shaders" examples/shaders/ball.frag -o "$out/$1-glsl.spv" >&2
+  glslangValidator -D -V -S frag -e main -I"$out/$1/shaders" examples/shaders/ball.hlsl -o "$out/$1-hlsl.spv" >&2
+  for language in glsl hlsl; do spirv-val --target-env vulkan1.1 "$out/$1-$language.spv"; done
+}
+shaders kinds
+for bake in eval "${layouts[@]/#/eval-}"; do
+  shaders "$bake"
+  # Pictures of luthier_eval, which ball.c calls, too, in these bakes. Its sphere has no triangles: pixels of the silhouette differ.
+  "$out/ball" "$out/$bake" car-paint "$out/$bake-ball.ppm" >/dev/null
+  for language in glsl hlsl; do
+    spirv-cross "$out/$bake-$language.spv" --version 450 --no-es >"$out/$bake-$language.glsl"
+    "$out/run" "$out/$bake" car-paint "$out/$bake-$language.ppm" "$out/$bake-$language.glsl"
+    python3 examples/c/difference.py "$out/$bake-ball.ppm" "$out/$bake-$language.ppm" "${limits[@]}"
+  done
 done

@@ -1,4 +1,5 @@
-// A pixel shader of shader model 5.1: dxc -T ps_6_0 -E main -I BAKE/shaders ball.hlsl, or fxc /T ps_5_1 /I BAKE\shaders ball.hlsl
+// A pixel shader of shader model 5.1: glslangValidator -D -V -S frag -e main -IBAKE/shaders ball.hlsl -o ball.spv
+// Or, untested: dxc -T ps_6_0 -E main -I BAKE/shaders ball.hlsl; fxc /T ps_5_1 /I BAKE\shaders ball.hlsl
 // space0 is that of the bake: textures t0 to t9, the sampler s5, the materials t6 as a raw buffer. The rest is in space1.
 #include "baked.hlsl"
 
