@@ -13,7 +13,7 @@ cd "$(dirname "$0")/.."
 # Everything is computed: no results of earlier runs.
 export LUTHIER_CACHE=
 
-steps=(tests random fuzz release examples engines kind packages installed promises python scale crash farm gpu book)
+steps=(tests random fuzz release examples c engines kind packages installed promises python scale crash farm gpu book)
 # By its name only, because an emulator takes half an hour.
 named=(architecture)
 # Steps that take less than a minute of a processor: they are kept up to date with every change.
@@ -24,6 +24,7 @@ declare -A says=(
   [fuzz]='ten minutes of search for inputs that bring a parser down (`docs/fuzzing.md`)'
   [release]='release builds write the bytes of debug builds, and name the Cargo feature of a verb that they lack'
   [examples]='the renderers in `examples` show the shipped tables, in a browser too'
+  [c]='C programs read bakes and faulty files, their ball in OpenGL is that of `preview`, and fragment shaders around baked texts in Vulkan GLSL and HLSL draw it, too'
   [engines]='three.js and Babylon.js read the tables of `luthier table`, in furnaces in a browser'
   [kind]='a kind of table is added by the six files of CONTRIBUTING.md, and a reflectance model by a folder and a row; both are baked and judged'
   [packages]='every crate is packed, and built from its package'
@@ -48,6 +49,7 @@ declare -A reads=(
   [fuzz]="crate:luthier-fuzz materials tests/broken tests/broken-surfaces scripts/fuzz.sh $built"
   [release]="crate:luthier-cli materials $built"
   [examples]="lean:luthier-cli lean:luthier-build crates/luthier-material/examples materials examples scripts/run-examples.sh scripts/patience.mjs $built"
+  [c]="lean:luthier-cli materials examples/c examples/shaders scripts/c-host.sh $built"
   [engines]="crate:luthier-table crate:luthier-texture crates/luthier-cli/src scripts/engines scripts/patience.mjs $built"
   [kind]="lean:luthier-cli lean:luthier-gpu scripts/add-kind.sh scripts/add-kind.patch scripts/add-model.sh scripts/add-model.patch scripts/patched.sh $built"
   [packages]="crates README.md scripts/package.sh $built"
@@ -81,6 +83,10 @@ release() {
 examples() {
   cargo build --locked --release -p luthier-cli
   LUTHIER=$PWD/target/release/luthier ./scripts/run-examples.sh
+}
+c() {
+  cargo build --locked --release -p luthier-cli
+  LUTHIER=$PWD/target/release/luthier ./scripts/c-host.sh
 }
 engines() {
   cargo build --locked --release -p luthier-cli

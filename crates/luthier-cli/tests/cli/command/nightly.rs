@@ -11,10 +11,11 @@ use luthier_workshop::root;
 use crate::workshop::Workshop;
 
 /// Scripts that the steps call.
-const CALLED: [&str; 18] = [
+const CALLED: [&str; 19] = [
     "random-tests.sh",
     "fuzz.sh",
     "run-examples.sh",
+    "c-host.sh",
     "engines/furnace.sh",
     "add-kind.sh",
     "add-model.sh",
@@ -39,8 +40,9 @@ case $* in view*) echo "--features view"; exit 1 ;; bake*) mkdir -p "$4" && echo
 "#;
 
 /// Every step that runs without its name.
-const ALL: [&str; 16] = [
+const ALL: [&str; 17] = [
     "book",
+    "c",
     "crash",
     "engines",
     "examples",
@@ -90,6 +92,8 @@ impl Repository {
             "tests/crash/kill.c",
             "examples/wgpu/main.rs",
             "examples/farm/job",
+            "examples/c/ball.c",
+            "examples/shaders/ball.frag",
             "docs/proof.md",
             "docs/pages/nightly.md",
             "docs/measurements/stability.json",
@@ -186,14 +190,15 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
     let repository = Repository::passed();
     assert_eq!(repository.check().1, set(&[]));
     let all_but_book = &ALL[1..];
-    let cases: [(&str, &[&str]); 19] = [
+    let cases: [(&str, &[&str]); 20] = [
         ("CHANGELOG.md", &[]),
         ("docs/pages/nightly.md", &[]),
         ("docs/proof.md", &["book"]),
         ("docs/measurements/stability.json", &["book", "tests"]),
-        ("materials/gold.toml", &["examples", "farm", "fuzz", "gpu", "python", "random", "release", "tests"]),
+        ("materials/gold.toml", &["c", "examples", "farm", "fuzz", "gpu", "python", "random", "release", "tests"]),
         ("examples/wgpu/main.rs", &["examples"]),
         ("examples/farm/job", &["examples", "farm"]),
+        ("examples/c/ball.c", &["c", "examples"]),
         ("tests/crash/kill.c", &["crash"]),
         ("scripts/engines/furnace.sh", &["engines"]),
         ("Cargo.lock", all_but_book),
@@ -210,6 +215,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         (
             "crates/luthier-mesh/src/lib.rs",
             &[
+                "c",
                 "crash",
                 "examples",
                 "farm",
@@ -229,6 +235,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         (
             "crates/luthier-gallery/src/lib.rs",
             &[
+                "c",
                 "crash",
                 "examples",
                 "farm",
