@@ -6,7 +6,7 @@
 #   scripts/nightly.sh --page     writes the page anew, from the rows
 # A step is out of date when anything that it depends on is not as it was when the step passed. It runs on what is committed: where the work
 # tree differs there, it is refused. Wants what scripts/test.sh installs, GNU time, a C++ compiler (Debian: g++), and the packages that
-# scripts/farm/*.sh and scripts/other-architecture.sh name.
+# scripts/farm/*.sh, scripts/mitsuba.sh and scripts/other-architecture.sh name.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/steps.sh

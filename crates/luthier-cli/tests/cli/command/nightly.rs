@@ -11,7 +11,7 @@ use luthier_workshop::root;
 use crate::workshop::Workshop;
 
 /// Scripts that the steps call.
-const CALLED: [&str; 18] = [
+const CALLED: [&str; 19] = [
     "random-tests.sh",
     "fuzz.sh",
     "run-examples.sh",
@@ -30,6 +30,7 @@ const CALLED: [&str; 18] = [
     "farm/s3.sh",
     "gpu.sh",
     "python.sh",
+    "mitsuba.sh",
 ];
 
 /// It passes, unless `FAILS` has its name. As `luthier` it has no window, and bakes a file.
@@ -39,7 +40,7 @@ case $* in view*) echo "--features view"; exit 1 ;; bake*) mkdir -p "$4" && echo
 "#;
 
 /// Every step that runs without its name.
-const ALL: [&str; 16] = [
+const ALL: [&str; 17] = [
     "book",
     "crash",
     "engines",
@@ -49,6 +50,7 @@ const ALL: [&str; 16] = [
     "gpu",
     "installed",
     "kind",
+    "mitsuba",
     "packages",
     "promises",
     "python",
@@ -90,6 +92,7 @@ impl Repository {
             "tests/crash/kill.c",
             "examples/wgpu/main.rs",
             "examples/farm/job",
+            "examples/mitsuba/luthier_bsdf.py",
             "docs/proof.md",
             "docs/pages/nightly.md",
             "docs/measurements/stability.json",
@@ -186,7 +189,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
     let repository = Repository::passed();
     assert_eq!(repository.check().1, set(&[]));
     let all_but_book = &ALL[1..];
-    let cases: [(&str, &[&str]); 19] = [
+    let cases: [(&str, &[&str]); 20] = [
         ("CHANGELOG.md", &[]),
         ("docs/pages/nightly.md", &[]),
         ("docs/proof.md", &["book"]),
@@ -194,6 +197,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         ("materials/gold.toml", &["examples", "farm", "fuzz", "gpu", "python", "random", "release", "tests"]),
         ("examples/wgpu/main.rs", &["examples"]),
         ("examples/farm/job", &["examples", "farm"]),
+        ("examples/mitsuba/luthier_bsdf.py", &["examples", "mitsuba"]),
         ("tests/crash/kill.c", &["crash"]),
         ("scripts/engines/furnace.sh", &["engines"]),
         ("Cargo.lock", all_but_book),
@@ -217,6 +221,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
                 "gpu",
                 "kind",
                 "installed",
+                "mitsuba",
                 "packages",
                 "promises",
                 "python",
@@ -235,6 +240,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
                 "gpu",
                 "kind",
                 "installed",
+                "mitsuba",
                 "packages",
                 "promises",
                 "python",
