@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# luthier as a user installs it: `cargo install` of the packed crates with an empty cargo home, and a static program for x86-64 Linux without the verbs
-# that need a graphics driver. Lists sizes. Needs the network, and two release builds.
+# luthier as a user installs it: `cargo install` of the packed crates with an empty cargo home, and static programs for Linux without the verbs that need a
+# graphics driver: for x86-64, and for aarch64 where the toolchain has its target. Lists sizes. Needs the network, and two or three release builds.
+# The targets: rustup target add x86_64-unknown-linux-musl aarch64-unknown-linux-musl. With qemu-aarch64-static (Debian: qemu-user-static) the second runs, too.
 #   scripts/installed.sh          all
 #   scripts/installed.sh --debug  unoptimised, in half of the time
 set -euo pipefail
@@ -13,11 +14,12 @@ debug=() profile=(--release) built=release
 
 step() { printf '\n== %s\n' "$1"; }
 size() { printf '%s: %d KiB\n' "$1" $(($(stat --format %s "$2") / 1024)); }
-# A program checks and bakes a material.
+# works COMMAND...: a program, or one under an emulator, checks and bakes a material.
 works() {
+  rm -rf "$work/out"
   printf 'schema = 1\nname = "gold"\n[[layer]]\ntype = "conductor"\nior = "au"\nroughness = 0.3\n' >"$work/gold.toml"
-  "$1" check "$work/gold.toml"
-  "$1" bake "$work/gold.toml" --out "$work/out" --quiet
+  "$@" check "$work/gold.toml"
+  "$@" bake "$work/gold.toml" --out "$work/out" --quiet
   test -s "$work/out/manifest.json"
 }
 
@@ -55,10 +57,10 @@ RUSTFLAGS="-C target-feature=+crt-static" \
   cargo build --locked --quiet "${profile[@]}" -p luthier-cli --no-default-features --target "$target" --target-dir target/static
 static=target/static/$target/$built/luthier
 # The loader of shared programs has no place in it.
-if readelf --program-headers "$static" | grep -q INTERP; then
-  echo "error: $static asks for a loader"
-  exit 1
-fi
+stands_alone() {
+  ! readelf --program-headers "$1" | grep -q INTERP || { echo "error: $1 asks for a loader" && exit 1; }
+}
+stands_alone "$static"
 env -i LUTHIER_CACHE= "$(command -v bash)" -c "cd / && '$PWD/$static' --version"
 works "$static"
 for verb in preview compare bench cost view report; do
@@ -70,3 +72,25 @@ for verb in preview compare bench cost view report; do
   }
 done
 size "luthier, static, $target" "$static"
+
+step "static, aarch64"
+target=aarch64-unknown-linux-musl
+if [ ! -d "$(rustc --print sysroot)/lib/rustlib/$target" ]; then
+  echo "not built: the toolchain has no $target"
+  exit
+fi
+# No C is compiled, and the linker is that of the toolchain: nothing of the other architecture has to be installed.
+CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_LINKER=rust-lld \
+  cargo build --locked --quiet "${profile[@]}" -p luthier-cli --no-default-features --target "$target" --target-dir target/static
+static=target/static/$target/$built/luthier
+stands_alone "$static"
+size "luthier, static, $target" "$static"
+if command -v qemu-aarch64-static >/dev/null; then
+  here=$work/x86
+  mv "$work/out" "$here"
+  works qemu-aarch64-static "$static"
+  diff -r "$here" "$work/out"
+  echo "it runs under an emulator, and bakes the same bytes"
+else
+  echo "not run: there is no qemu-aarch64-static"
+fi

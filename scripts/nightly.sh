@@ -6,14 +6,14 @@
 #   scripts/nightly.sh --page     writes the page anew, from the rows
 # A step is out of date when anything that it depends on is not as it was when the step passed. It runs on what is committed: where the work
 # tree differs there, it is refused. Wants what scripts/test.sh installs, GNU time, a C++ compiler (Debian: g++), and the packages that
-# scripts/farm/*.sh and scripts/other-architecture.sh name.
+# scripts/farm/*.sh, scripts/mitsuba.sh and scripts/other-architecture.sh name.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/steps.sh
 # Everything is computed: no results of earlier runs.
 export LUTHIER_CACHE=
 
-steps=(tests random fuzz release examples c engines kind packages installed promises python scale crash farm gpu book)
+steps=(tests random fuzz release examples c engines kind packages installed promises python mitsuba scale crash farm gpu book)
 # By its name only, because an emulator takes half an hour.
 named=(architecture)
 # Steps that take less than a minute of a processor: they are kept up to date with every change.
@@ -31,6 +31,7 @@ declare -A says=(
   [installed]='`cargo install` makes the program from the packed crates with an empty cargo home, and a static one tells the verbs that it lacks by exit code 4'
   [promises]='every crate compiles with the Rust that Cargo.toml states, and `luthier` keeps the interface of the last tag'
   [python]='the wheel of the Python module installs in a new environment, and its notebook, examples and tests run there'
+  [mitsuba]='the plugin for Mitsuba 3 passes its chi-square test, returns the albedo in a white furnace, and draws the ball of `luthier preview --simulated`'
   [crash]='bakes are killed at every call that changes files and at random moments, interrupted, run side by side, and given faulty files'
   [scale]='libraries of 100 and 1,000 generated materials are baked'
   [farm]='Slurm, Ninja, CMake and Make bake shares and merge them, a Slurm node is killed, jobs for Kubernetes and OpenCue are checked, and machines share a store of the S3 protocol that lies, refuses and is gone'
@@ -56,6 +57,7 @@ declare -A reads=(
   [installed]="crates README.md scripts/package.sh scripts/installed.sh $built"
   [promises]="crates scripts/promises.sh $built"
   [python]="crate:luthier-python crates/luthier-python lean:luthier-cli materials scripts/python.sh $built"
+  [mitsuba]="crate:luthier-python crates/luthier-python crate:luthier-gpu lean:luthier-cli examples/mitsuba scripts/mitsuba.sh $built"
   [scale]="lean:luthier-cli crates/luthier-material/examples scripts/many.sh $built"
   [crash]="lean:luthier-cli tests/crash $built"
   [farm]="lean:luthier-cli materials examples/farm scripts/farm $built"
@@ -100,6 +102,10 @@ promises() { ./scripts/promises.sh; }
 python() {
   cargo build --locked --release -p luthier-cli
   LUTHIER=$PWD/target/release/luthier ./scripts/python.sh --install
+}
+mitsuba() {
+  cargo build --locked --release -p luthier-cli
+  LUTHIER=$PWD/target/release/luthier ./scripts/mitsuba.sh
 }
 crash() {
   cargo build --locked --release -p luthier-cli

@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use serde_json::json;
 
 use crate::fault::{file, unknown, value};
+use crate::interrupt::at_once;
 
 /// A table: a file, or texels with the type of their samples.
 #[derive(FromPyObject)]
@@ -89,7 +90,7 @@ pub(crate) fn audit(py: Python<'_>, table: Table<'_>, names: Names, max_error: f
         StatedError::Unknown { what, name, known } => unknown(what, name, known),
         _ => value(error),
     })?;
-    let found = py.detach(|| judged(&image, &statement)).map_err(value)?;
+    let found = at_once(py, move |_| judged(&image, &statement))?.map_err(value)?;
     let verdict = json!({
         "format": format,
         "notes": notes,

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::str::FromStr;
 
-use luthier::{Compression, Encoded, FunctionGroup, Package, Shading, Source};
+use luthier::{Compression, Encoded, FunctionGroup, Observer, Package, Shading, Source};
+use luthier_bake::JobKind;
 use luthier_lut::Image;
 use numpy::PyArray3;
 use pyo3::prelude::*;
@@ -12,6 +13,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays;
 use crate::fault;
+use crate::interrupt::{self, Interrupt};
 use crate::material::Material;
 use crate::store::store;
 
@@ -35,6 +37,18 @@ pub(crate) struct Asked {
     tables: Vec<String>,
 }
 
+/// Ends a bake that no one waits for before its next job.
+struct Watch<'a>(&'a Interrupt);
+
+impl Observer for Watch<'_> {
+    fn planned(&self, _: usize) {}
+    fn finished(&self, _: JobKind) {}
+    fn batch(&self, _: JobKind, _: bool) {}
+    fn is_cancelled(&self) -> bool {
+        self.0.is_raised()
+    }
+}
+
 /// The values of names.
 fn named<T: FromStr<Err: ToString>>(names: &[String]) -> PyResult<Vec<T>> {
     names.iter().map(|name| name.parse().map_err(fault::value)).collect()
@@ -55,14 +69,15 @@ pub(crate) fn bake(py: Python<'_>, materials: Vec<PyRef<'_, Material>>, asked: A
     let warnings = sources.iter().flat_map(|source| source.diagnostics().iter().map(|one| one.render(&source.text)));
     let warnings = warnings.collect();
     let materials: Vec<luthier::Material> = sources.iter().filter_map(|source| source.material().cloned()).collect();
-    let bake =
-        luthier::Bake { targets, functions: functions.into_iter().collect(), shading, ..luthier::Bake::default() };
-    let made = py.detach(|| {
+    let made = interrupt::at_once(py, move |interrupt| {
+        let observer = &Watch(interrupt);
+        let functions = functions.into_iter().collect();
+        let bake = luthier::Bake { targets, functions, shading, observer, ..luthier::Bake::default() };
         let package = bake.package(&bake.shading.shaded(materials), store())?;
         let encoded = package.encode(Compression::Zstd)?;
         Ok((package, encoded))
     });
-    let (package, encoded) = made.map_err(|error: luthier::Error| fault::of(py, &error))?;
+    let (package, encoded) = made?.map_err(|error: luthier::Error| fault::of(py, &error))?;
     Ok(Baked { package, encoded, warnings })
 }
 

@@ -14,16 +14,20 @@ use rayon::prelude::*;
 
 use crate::arrays;
 use crate::fault::{unknown, value};
+use crate::interrupt::{self, Interrupt};
 use crate::material::Material;
 use crate::store::store;
 
-/// Pairs that a thread evaluates at a time.
-const CHUNK: usize = 4096;
+/// Pairs that a thread evaluates at a time: few enough that an interrupt is soon noticed where one takes a millisecond.
+const CHUNK: usize = 512;
+
+/// Most values that are computed without asking for signals: a thread of their own takes longer than so few.
+const FEW: usize = 4096;
 
 /// A model of a material at one place, ready to be evaluated.
 #[pyclass(frozen, module = "luthier._luthier")]
 pub(crate) struct Function {
-    function: function::Function,
+    function: Arc<function::Function>,
     draws: Draws,
     columns: usize,
 }
@@ -113,15 +117,15 @@ pub(crate) fn prepare(
     if let Some(input) = inputs.not_taken(model.as_ref(), &shown, has_maps, false) {
         return Err(value(format!("model `{model_name}` takes no `{}` for {}", input.name(), label)));
     }
-    py.detach(|| {
+    let made = interrupt::at_once(py, move |_| {
         let subject = Subject::new(model, material, None, function::fits(store()), &inputs, None)?;
         let subject = Arc::new(subject);
         let draws = Draws::new(&subject);
-        let function = function::Function::new(&subject, &kind);
+        let function = Arc::new(function::Function::new(&subject, &kind));
         let columns = function.columns();
         Ok(Function { function, draws, columns })
-    })
-    .map_err(|refusal: Refusal| value(refusal))
+    });
+    made?.map_err(|refusal: Refusal| value(refusal))
 }
 
 /// Directions, weights and densities.
@@ -147,17 +151,19 @@ impl Function {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (wi, wo) = (arrays::directions(&wi, "wi")?, arrays::directions(&wo, "wo")?);
         let count = arrays::pairs(wi.len(), wo.len())?;
-        let values = py.detach(|| {
+        // A single value of a model that is an estimate may take a second.
+        let at_a_time = if self.function.is_estimate() { 1 } else { CHUNK };
+        let values = self.in_parts(py, count, |interrupt| {
             let mut values = vec![0.0; count * self.columns];
-            let rows = values.par_chunks_mut(CHUNK * self.columns).enumerate();
-            rows.for_each(|(chunk, rows)| {
-                let part = |list| part(list, chunk * CHUNK, rows.len() / self.columns);
+            let rows = values.par_chunks_mut(at_a_time * self.columns).enumerate();
+            rows.filter(|_| !interrupt.is_raised()).for_each(|(chunk, rows)| {
+                let part = |list| part(list, chunk * at_a_time, rows.len() / self.columns);
                 let (wi, wo) = (part(wi), part(wo));
                 self.function.eval_pairs(wi, wo, rows);
                 spoil(wi, wo, rows, self.columns);
             });
             values
-        });
+        })?;
         arrays::rows(py, self.columns, values)
     }
 
@@ -169,15 +175,15 @@ impl Function {
         wo: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Estimates<'py>> {
         let (wi, wo) = (arrays::directions(&wi, "wi")?, arrays::directions(&wo, "wo")?);
-        arrays::pairs(wi.len(), wo.len())?;
-        let found = py.detach(|| {
+        let count = arrays::pairs(wi.len(), wo.len())?;
+        let found = self.in_parts(py, count, |interrupt| {
             let pairs: Vec<[DVec3; 2]> = each_pair(wi, wo).collect();
-            let rows = pairs.par_iter().map(|&[wi, wo]| match wi.is_nan() || wo.is_nan() {
+            let rows = pairs.par_iter().map(|&[wi, wo]| match wi.is_nan() || wo.is_nan() || interrupt.is_raised() {
                 true => vec![Estimate::exact(f64::NAN); self.columns],
                 false => self.function.values(wi, wo),
             });
             rows.collect::<Vec<_>>()
-        });
+        })?;
         let means = found.iter().flatten().map(|one| one.mean).collect();
         let errors = found.iter().flatten().map(|one| one.std_err).collect();
         Ok((arrays::rows(py, self.columns, means)?, arrays::rows(py, self.columns, errors)?))
@@ -185,18 +191,19 @@ impl Function {
 
     /// Directional albedos seen from (n, 3) directions, and how far each may be off.
     fn albedo<'py>(&self, py: Python<'py>, wo: PyReadonlyArray2<'_, f64>) -> PyResult<Estimates<'py>> {
-        let wo = arrays::directions(&wo, "wo")?;
-        let found: Vec<(Vec<f64>, Vec<f64>)> = py.detach(|| {
+        let wo = arrays::directions(&wo, "wo")?.to_vec();
+        let (function, columns) = (Arc::clone(&self.function), self.columns);
+        let found: Vec<(Vec<f64>, Vec<f64>)> = interrupt::at_once(py, move |interrupt| {
             let rows = wo.par_iter().map(|&wo| {
-                if wo.iter().any(|x| x.is_nan()) {
-                    return (vec![f64::NAN; self.columns], vec![f64::NAN; self.columns]);
+                if wo.iter().any(|x| x.is_nan()) || interrupt.is_raised() {
+                    return (vec![f64::NAN; columns], vec![f64::NAN; columns]);
                 }
-                let albedo = self.function.albedo(DVec3::from(wo));
+                let albedo = function.albedo(DVec3::from(wo));
                 let errors = albedo.values.iter().map(|one| one.std_err).collect();
                 (albedo.values.iter().map(|one| one.mean).collect(), albedo.changes.unwrap_or(errors))
             });
             rows.collect()
-        });
+        })?;
         let (means, errors): (Vec<_>, Vec<_>) = found.into_iter().unzip();
         Ok((arrays::rows(py, self.columns, means.concat())?, arrays::rows(py, self.columns, errors.concat())?))
     }
@@ -213,11 +220,11 @@ impl Function {
         if let Some(row) = u.iter().position(|u| u.iter().any(|u| !(0.0..1.0).contains(u))) {
             return Err(value(format!("u: row {row} is {:?}, and numbers are from 0 up to 1", u[row])));
         }
-        let drawn: Vec<([f64; 3], Vec<f64>, f64)> = py.detach(|| {
+        let drawn: Vec<([f64; 3], Vec<f64>, f64)> = self.in_parts(py, count, |interrupt| {
             let rows = (0..count).into_par_iter().map(|k| {
                 let wo = DVec3::from(wo[if wo.len() == 1 { 0 } else { k }]);
                 let u = u[if u.len() == 1 { 0 } else { k }];
-                if wo.is_nan() {
+                if wo.is_nan() || interrupt.is_raised() {
                     return ([f64::NAN; 3], vec![f64::NAN; self.columns], f64::NAN);
                 }
                 let Some((wi, pdf)) = self.draws.sample(wo, u) else {
@@ -227,7 +234,7 @@ impl Function {
                 (wi.to_array(), weight, pdf)
             });
             rows.collect()
-        });
+        })?;
         let directions = drawn.iter().flat_map(|(wi, ..)| *wi).collect();
         let weights = drawn.iter().flat_map(|(_, weight, _)| weight.iter().copied()).collect();
         let densities = drawn.iter().map(|(.., pdf)| *pdf).collect();
@@ -246,16 +253,31 @@ impl Function {
         wo: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (wi, wo) = (arrays::directions(&wi, "wi")?, arrays::directions(&wo, "wo")?);
-        arrays::pairs(wi.len(), wo.len())?;
-        let densities: Vec<f64> = py.detach(|| {
+        let count = arrays::pairs(wi.len(), wo.len())?;
+        let densities: Vec<f64> = self.in_parts(py, count, |interrupt| {
             let pairs: Vec<[DVec3; 2]> = each_pair(wi, wo).collect();
-            let rows = pairs.par_iter().map(|&[wi, wo]| match wi.is_nan() || wo.is_nan() {
+            let rows = pairs.par_iter().map(|&[wi, wo]| match wi.is_nan() || wo.is_nan() || interrupt.is_raised() {
                 true => f64::NAN,
                 false => self.draws.pdf_solid_angle(wi, wo),
             });
             rows.collect()
-        });
+        })?;
         Ok(PyArray1::from_vec(py, densities))
+    }
+}
+
+impl Function {
+    /// The result of work on a number of values, without the interpreter's lock.
+    fn in_parts<T: Send>(
+        &self,
+        py: Python<'_>,
+        count: usize,
+        work: impl FnOnce(&Interrupt) -> T + Send,
+    ) -> PyResult<T> {
+        if count <= FEW && !self.function.is_estimate() {
+            return Ok(py.detach(|| work(&Interrupt::default())));
+        }
+        interrupt::in_parts(py, work)
     }
 }
 

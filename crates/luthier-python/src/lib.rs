@@ -9,6 +9,7 @@ mod bake;
 mod evaluate;
 mod fault;
 mod import;
+mod interrupt;
 mod material;
 mod models;
 mod store;

@@ -17,6 +17,7 @@ use serde_json::{Value as Json, json};
 use crate::arrays;
 use crate::audit::nodes;
 use crate::fault::{unknown, value};
+use crate::interrupt::at_once;
 
 /// Texels, and what they are as JSON.
 type Texels<'py> = (Bound<'py, PyArray3<f32>>, String);
@@ -85,18 +86,18 @@ pub(crate) fn table_dfg<'py>(
         let found = Masking::ALL.into_iter().find(|one| one.name() == masking);
         let masking = found.ok_or_else(|| unknown("masking term", masking, &names))?;
         let distribution = distribution(distribution_name)?;
-        let found = py.detach(|| search(distribution, masking, &SPLIT_SUM, max_abs, lowest[0], lowest[1]));
+        let found = at_once(py, move |_| search(distribution, masking, &SPLIT_SUM, max_abs, lowest[0], lowest[1]))?;
         let Found { table, texels, error, held } = found;
         return of_dfg(py, &table, texels, &error, held);
     };
     let names: Vec<&str> = Preset::ALL.iter().map(|preset| preset.name).collect();
     let mut table = Preset::named(name).ok_or_else(|| unknown("preset", name, &names))?.table();
     table.size = size.unwrap_or(table.size);
-    let (texels, stats) = py.detach(|| {
+    let (table, texels, stats) = at_once(py, move |_| {
         let texels = table.bake();
         let stats = table.error(&texels, lowest[0], lowest[1]);
-        (texels, stats)
-    });
+        (table, texels, stats)
+    })?;
     let held = stats.max_abs_err <= max_abs;
     of_dfg(py, &table, texels, &stats, held)
 }
@@ -121,11 +122,11 @@ pub(crate) fn table_cloth<'py>(
     let (distribution, masking) = (Distribution::Ggx, Masking::SmithCorrelated);
     let table =
         DfgTable { distribution, masking, layout, values: vec![value_of], size, stored: Stored::Float, base: None };
-    let (texels, stats) = py.detach(|| {
+    let (table, texels, stats) = at_once(py, move |_| {
         let texels = table.bake();
         let stats = table.error(&texels, lowest[0], lowest[1]);
-        (texels, stats)
-    });
+        (table, texels, stats)
+    })?;
     let about = json!({
         "distribution": "charlie", "visibility": visibility, "axes": table.layout.to_string(), "values": [value_of.name()], "size": size,
         "error": error(&stats),
@@ -145,7 +146,7 @@ pub(crate) fn table_energy<'py>(
     let domain = EnergyDomain { min_cos: lowest[0], min_alpha: lowest[1], ior: INDICES };
     let mut all = Vec::new();
     for file in preset.files {
-        let parts = py.detach(|| {
+        let parts = at_once(py, move |_| {
             let texels = preset.bake(file);
             let tables = preset.tables(file);
             let measured = tables.into_iter().zip(texels).map(|(table, texels)| {
@@ -153,7 +154,7 @@ pub(crate) fn table_energy<'py>(
                 (table, texels, stats)
             });
             measured.collect::<Vec<_>>()
-        });
+        })?;
         let count = parts.len();
         for (part, (table, texels, stats)) in parts.into_iter().enumerate() {
             let name = if count == 1 { file.name.to_owned() } else { format!("{}-{part}", file.name) };
@@ -191,11 +192,11 @@ pub(crate) fn table_film<'py>(
     let [film, below] = [film, base].map(|[n, k]| Complex64::new(n, k));
     let color = if three_wavelengths { Color::ThreeWavelengths(WAVELENGTHS_NM) } else { Color::Spectral };
     let table = FilmTable { above, film, below, color, layout, size, stored: Stored::Float };
-    let (texels, stats) = py.detach(|| {
+    let (table, texels, stats) = at_once(py, move |_| {
         let texels = table.bake();
         let stats = table.error(&texels, min_cos);
-        (texels, stats)
-    });
+        (table, texels, stats)
+    })?;
     let about =
         json!({ "axes": table.layout.to_string(), "values": ["r", "g", "b"], "size": size, "error": error(&stats) });
     Ok((arrays::image(py, texels)?, about.to_string()))
@@ -212,11 +213,11 @@ pub(crate) fn table_fresnel<'py>(
 ) -> PyResult<Texels<'py>> {
     let layout = FresnelLayout::parse(axes, nodes(nodes_name)?).map_err(value)?;
     let table = FresnelTable { layout, size, stored: Stored::Float };
-    let (texels, stats) = py.detach(|| {
+    let (table, texels, stats) = at_once(py, move |_| {
         let texels = table.bake();
         let stats = table.error(&texels, min_cos);
-        (texels, stats)
-    });
+        (table, texels, stats)
+    })?;
     let about =
         json!({ "axes": table.layout.to_string(), "values": ["reflectance"], "size": size, "error": error(&stats) });
     Ok((arrays::image(py, texels)?, about.to_string()))
@@ -231,11 +232,11 @@ pub(crate) fn table_ltc<'py>(py: Python<'py>, distribution_name: &str, masking: 
         other => return Err(unknown("masking term", other, &["correlated", "separable"])),
     };
     let table = LtcTable { masking, ..LtcTable::of_engines(distribution(distribution_name)?) };
-    let (texels, between) = py.detach(|| {
+    let (table, texels, between) = at_once(py, move |_| {
         let texels = table.bake();
         let between = table.error_between_texels(&texels, LTC_FROM[0], LTC_FROM[1]);
-        (texels, between)
-    });
+        (table, texels, between)
+    })?;
     let about = |values: Json| {
         let axes = table.layout.to_string();
         json!({ "axes": axes, "values": values, "size": table.size, "error": lobe_error(&between) }).to_string()
@@ -250,11 +251,11 @@ pub(crate) fn table_ltc<'py>(py: Python<'py>, distribution_name: &str, masking: 
 #[pyfunction]
 pub(crate) fn table_sheen(py: Python<'_>) -> PyResult<Texels<'_>> {
     let table = SheenTable::of_engines();
-    let (texels, [lobe, albedo]) = py.detach(|| {
+    let (table, texels, [lobe, albedo]) = at_once(py, move |_| {
         let texels = table.bake();
         let errors = table.error_between_texels(&texels, MIN_ALBEDO);
-        (texels, errors)
-    });
+        (table, texels, errors)
+    })?;
     let about = json!({
         "axes": table.layout.to_string(), "values": ["a", "b", "albedo"], "size": table.size, "error": lobe_error(&lobe),
         "error_albedo": lobe_error(&albedo),

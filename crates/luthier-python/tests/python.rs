@@ -29,8 +29,18 @@ fn arrays_threads_and_errors() {
 }
 
 #[test]
+fn builds_of_wheels_say_what_is_missing() {
+    passes("test_backend");
+}
+
+#[test]
 fn bakes_tables_audits_and_imports() {
     passes("test_bake");
+}
+
+#[test]
+fn calls_are_interrupted() {
+    passes("test_interrupt");
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 
 use luthier_layers::frame::local;
 use luthier_layers::glam::DVec3;
+use luthier_layers::layers::ALPHA_MIN;
 use luthier_layers::models::weidlich_wilkie::sampling::Sampler;
 use luthier_layers::monochrome::Monochrome;
 
@@ -15,8 +16,9 @@ const WAVELENGTH_NM: f64 = 550.0;
 /// Share of the draws that a cosine about the normal gets. No model is without density anywhere, so means over draws have no bias.
 const COSINE: f64 = 0.1;
 
-/// Draws of light for a subject: the layers as `wo` sees them (Weidlich and Wilkie 2009, eq. 3.6), mixed with a cosine. Every model of a material has the
-/// same draws, so that two models can be compared at the same directions.
+/// Draws of light for a subject: the layers as `wo` sees them (Weidlich and Wilkie 2009, eq. 3.6), mixed with a cosine. Every model with a shader has the same
+/// draws of a material, so that two of them can be compared at the same directions. The other models have those, too, unless an interface is smooth: shaders
+/// raise its slope parameters further.
 ///
 /// ```
 /// # use std::sync::Arc;
@@ -41,11 +43,15 @@ pub struct Draws {
 impl Draws {
     /// The draws of a subject.
     pub fn new(subject: &Subject) -> Self {
-        let stack = Monochrome::new(
-            &subject.place.stack(&subject.material.stack),
-            WAVELENGTH_NM,
-            nearest_channel(WAVELENGTH_NM),
-        );
+        let mut shown = subject.place.stack(&subject.material.stack);
+        if subject.model.info().shading().is_some() {
+            // Lobes that are drawn narrower than they are shown have weights of a hundred beside their peaks.
+            for surface in shown.layers.iter_mut().map(|layer| &mut layer.surface) {
+                surface.alpha_x = surface.alpha_x.max(ALPHA_MIN);
+                surface.alpha_y = surface.alpha_y.max(ALPHA_MIN);
+            }
+        }
+        let stack = Monochrome::new(&shown, WAVELENGTH_NM, nearest_channel(WAVELENGTH_NM));
         Self { stack, normal: subject.place.sample.normal }
     }
 
@@ -129,5 +135,30 @@ mod tests {
             let albedo = function.albedo(wo).values[0].mean;
             assert!((mean - albedo).abs() < 2e-3, "{mean} {albedo}");
         }
+    }
+
+    /// Oracle: a part of a mixture that is drawn as it is shown has weights of about its reflectance over its share of the draws, here less than 3.
+    #[test]
+    fn weights_of_a_smooth_coat_are_small() {
+        let text = "schema = 1\nname = \"varnish\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nsmooth = true\n\
+                    [[layer]]\ntype = \"conductor\"\nior = \"al\"\nalpha = 0.4\n";
+        let material = crate::parse("varnish.toml", text).unwrap();
+        let inputs = Inputs::default();
+        let fit = Arc::new(Varied::of);
+        let subject = Arc::new(Subject::new(model("elek").unwrap(), material, None, fit, &inputs, None).unwrap());
+        let (draws, function) = (Draws::new(&subject), Function::new(&subject, &Kind::Color(Color::Spectral)));
+        let wo = DVec3::new(0.6, 0.0, 0.8);
+        let at = |i: u32| (f64::from(i) + 0.5) / 64.0;
+        // The first draws are of the cosine, the next of the coat.
+        let mut coat = 0;
+        for (a, (b, c)) in (6..64).flat_map(|a| (0..64).flat_map(move |b| (0..64).map(move |c| (a, (b, c))))) {
+            let Some((wi, pdf)) = draws.sample(wo, [at(a), at(b), at(c)]) else { continue };
+            if (wi - DVec3::new(-0.6, 0.0, 0.8)).length() < 0.01 {
+                coat += 1;
+                let weight = function.values(wi, wo)[0].mean / pdf;
+                assert!(weight < 3.0, "{weight} at {wi}");
+            }
+        }
+        assert!(coat > 1000, "{coat}");
     }
 }

@@ -31,6 +31,7 @@ const CALLED: [&str; 19] = [
     "farm/s3.sh",
     "gpu.sh",
     "python.sh",
+    "mitsuba.sh",
 ];
 
 /// It passes, unless `FAILS` has its name. As `luthier` it has no window, and bakes a file.
@@ -51,6 +52,7 @@ const ALL: [&str; 17] = [
     "gpu",
     "installed",
     "kind",
+    "mitsuba",
     "packages",
     "promises",
     "python",
@@ -94,6 +96,7 @@ impl Repository {
             "examples/farm/job",
             "examples/c/ball.c",
             "examples/shaders/ball.frag",
+            "examples/mitsuba/luthier_bsdf.py",
             "docs/proof.md",
             "docs/pages/nightly.md",
             "docs/measurements/stability.json",
@@ -199,6 +202,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         ("examples/wgpu/main.rs", &["examples"]),
         ("examples/farm/job", &["examples", "farm"]),
         ("examples/c/ball.c", &["c", "examples"]),
+        ("examples/mitsuba/luthier_bsdf.py", &["examples", "mitsuba"]),
         ("tests/crash/kill.c", &["crash"]),
         ("scripts/engines/furnace.sh", &["engines"]),
         ("Cargo.lock", all_but_book),
@@ -223,6 +227,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
                 "gpu",
                 "kind",
                 "installed",
+                "mitsuba",
                 "packages",
                 "promises",
                 "python",
@@ -242,6 +247,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
                 "gpu",
                 "kind",
                 "installed",
+                "mitsuba",
                 "packages",
                 "promises",
                 "python",
