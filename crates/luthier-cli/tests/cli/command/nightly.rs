@@ -11,11 +11,12 @@ use luthier_workshop::root;
 use crate::workshop::Workshop;
 
 /// Scripts that the steps call.
-const CALLED: [&str; 18] = [
+const CALLED: [&str; 19] = [
     "random-tests.sh",
     "fuzz.sh",
     "run-examples.sh",
     "engines/furnace.sh",
+    "formats.sh",
     "add-kind.sh",
     "add-model.sh",
     "package.sh",
@@ -39,12 +40,13 @@ case $* in view*) echo "--features view"; exit 1 ;; bake*) mkdir -p "$4" && echo
 "#;
 
 /// Every step that runs without its name.
-const ALL: [&str; 16] = [
+const ALL: [&str; 17] = [
     "book",
     "crash",
     "engines",
     "examples",
     "farm",
+    "formats",
     "fuzz",
     "gpu",
     "installed",
@@ -99,6 +101,7 @@ impl Repository {
             "scripts/add-kind.patch",
             "scripts/add-model.patch",
             "scripts/patched.sh",
+            "scripts/formats/validate.mjs",
             "scripts/patience.mjs",
         ] {
             workshop.write(file, "");
@@ -191,7 +194,10 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         ("docs/pages/nightly.md", &[]),
         ("docs/proof.md", &["book"]),
         ("docs/measurements/stability.json", &["book", "tests"]),
-        ("materials/gold.toml", &["examples", "farm", "fuzz", "gpu", "python", "random", "release", "tests"]),
+        (
+            "materials/gold.toml",
+            &["examples", "farm", "formats", "fuzz", "gpu", "python", "random", "release", "tests"],
+        ),
         ("examples/wgpu/main.rs", &["examples"]),
         ("examples/farm/job", &["examples", "farm"]),
         ("tests/crash/kill.c", &["crash"]),
@@ -213,6 +219,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
                 "crash",
                 "examples",
                 "farm",
+                "formats",
                 "fuzz",
                 "gpu",
                 "kind",
