@@ -137,12 +137,15 @@ pub(crate) fn textures(
     writer.all(surface, numbers)
 }
 
+/// A picture that was read: its texels as stored, its bytes, its format.
+type Read = (Rc<Picture>, Rc<Vec<u8>>, Container);
+
 struct Writer<'w> {
     material: &'w Material,
     format: Format,
     files: &'w dyn Fn(&str) -> io::Result<Vec<u8>>,
     lines: &'w mut Vec<Line>,
-    read: BTreeMap<String, Option<(Rc<Picture>, Rc<Vec<u8>>, Container)>>,
+    read: BTreeMap<String, Option<Read>>,
     textures: Vec<Texture>,
 }
 
@@ -181,7 +184,7 @@ impl Writer<'_> {
         let below = material.layers.get(base_number + 1).map(|layer| &layer.maps);
 
         let color = maps.base_color.as_ref().or_else(|| base.metallic.filter(|of| of.is_metal).and(maps.f0.as_ref()));
-        let color = color.or_else(|| maps.albedo.as_ref()).or_else(|| below.and_then(|maps| maps.albedo.as_ref()));
+        let color = color.or(maps.albedo.as_ref()).or_else(|| below.and_then(|maps| maps.albedo.as_ref()));
         if let Some(source) = self.source(color) {
             self.color(Slot::BaseColor, "map of the base's colour", &source);
         }
