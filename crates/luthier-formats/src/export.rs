@@ -7,7 +7,7 @@ use luthier_material::Material;
 
 use crate::closed::{Closed, closed};
 use crate::fit::fitted;
-use crate::light::{Light, Residual, Settings};
+use crate::light::{Light, Residual, Settings, worst_albedo, worst_lobe};
 use crate::maps::{self, Texture};
 use crate::surface::Surface;
 use crate::{Format, Numbers, formula};
@@ -34,13 +34,12 @@ pub struct Exported {
 impl Exported {
     /// The largest difference of directional albedos, over angles and channels.
     pub fn albedo_error(&self) -> f64 {
-        let all = self.residuals.iter().flat_map(|at| at.albedo.into_iter().zip(at.expected));
-        all.map(|(found, expected)| (found - expected).abs()).fold(0.0, f64::max)
+        worst_albedo(&self.residuals)
     }
 
     /// The largest lobe error, over angles and channels.
     pub fn lobe_error(&self) -> f64 {
-        self.residuals.iter().flat_map(|at| at.lobe).fold(0.0, f64::max)
+        worst_lobe(&self.residuals)
     }
 
     /// The largest lobe error that noise alone makes.

@@ -1,12 +1,12 @@
 //! The fit of numbers that have no closed form.
 //!
-//! Levenberg's and Marquardt's method, at all angles and in all channels at once, in a fixed order: the same material gives the same numbers everywhere. Shapes come from
-//! the energies of the judge's cells, and colours then from these and the directional albedo: a formula that is too bright at the edge whatever its numbers would widen lobes to lose light.
+//! Levenberg's and Marquardt's method, at all angles and in all channels at once, in a fixed order: the same material gives the same numbers everywhere. There are two searches: shapes from the energies of the judge's cells alone, and from these and the directional albedo. A
+//! formula that is too bright at the edge whatever its numbers widens lobes in the second to lose light; in the first lobes are right, and albedos may not be. Colours then follow from both. The search counts whose largest errors of albedo and lobe have the smaller sum.
 
 use luthier_layers::least_squares::{Column, LeastSquares, Place, Residuals};
 use luthier_optics::color::Color;
 
-use crate::light::Light;
+use crate::light::{Light, worst_albedo, worst_lobe};
 use crate::{Format, Numbers, formula};
 
 /// A number that is fitted.
@@ -72,16 +72,25 @@ pub(crate) fn fitted(format: Format, numbers: Numbers, free: &[Free], light: &Li
         return colored(&numbers);
     }
     let starts = if free.contains(&Free::Roughness) { &STARTS[..] } else { &STARTS[..1] };
-    let mut best: Option<(f64, Numbers)> = None;
-    for factor in starts {
-        let mut start = numbers.clone();
-        start.roughness = (factor * start.roughness).clamp(0.0, 1.0);
-        let found = descend(&colored(&start), free, 0.0);
-        if best.as_ref().is_none_or(|(cost, _)| found.0 < *cost) {
-            best = Some(found);
+    // The best start for shapes alone, and for shapes beside albedos.
+    let found = [0.0, ALBEDO].into_iter().filter_map(|albedo| {
+        let mut best: Option<(f64, Numbers)> = None;
+        for factor in starts {
+            let mut start = numbers.clone();
+            start.roughness = (factor * start.roughness).clamp(0.0, 1.0);
+            let found = descend(&colored(&start), free, albedo);
+            if best.as_ref().is_none_or(|(cost, _)| found.0 < *cost) {
+                best = Some(found);
+            }
         }
-    }
-    best.map_or(numbers, |(_, numbers)| colored(&numbers))
+        best.map(|(_, numbers)| colored(&numbers))
+    });
+    let found: Vec<Numbers> = found.collect();
+    let errors = |numbers: &Numbers| {
+        let residuals = light.residuals(&formula::values(format, numbers, color));
+        worst_albedo(&residuals) + worst_lobe(&residuals)
+    };
+    found.into_iter().min_by(|a, b| errors(a).total_cmp(&errors(b))).unwrap_or(numbers)
 }
 
 /// The free numbers in one line.

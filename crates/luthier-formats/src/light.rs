@@ -53,6 +53,17 @@ pub struct Residual {
     pub lobe_floor: Rgb,
 }
 
+/// The largest difference of directional albedos, over angles and channels.
+pub(crate) fn worst_albedo(residuals: &[Residual]) -> f64 {
+    let all = residuals.iter().flat_map(|at| at.albedo.into_iter().zip(at.expected));
+    all.map(|(found, expected)| (found - expected).abs()).fold(0.0, f64::max)
+}
+
+/// The largest lobe error, over angles and channels.
+pub(crate) fn worst_lobe(residuals: &[Residual]) -> f64 {
+    residuals.iter().flat_map(|at| at.lobe).fold(0.0, f64::max)
+}
+
 /// `f cos_theta_i` of unit directions to the light and to the eye.
 pub(crate) type Values = Box<dyn Fn(DVec3, DVec3) -> Rgb + Send + Sync>;
 

@@ -118,8 +118,10 @@ const INTRODUCTION: &str = "\
 - *lobe*: the largest lobe error, which is the share of the light that has to move, appear or vanish, over the same views;
 - *noise*: the lobe error that the noise of the simulation makes alone.
 
-Numbers that follow from the layers are taken in closed form; *fitted* counts those that have none: a fit takes them from the simulation, from the same angles and in all channels. OpenPBR describes layers, so that index, slopes, absorption and the base are said as they are; what remains
-there is what the graph of MaterialX makes of them, which neither bends light in a coat nor widens a lobe by it. Materials that vary over their surface are compared where their maps have texels of 1, films of a varying thickness in the middle of its range. Patina and flakes are left out on both sides.
+Numbers that follow from the layers are taken in closed form; *fitted* counts those that have none: a fit takes them from the simulation, from the same angles and in all channels. OpenPBR describes layers, so that indices, slopes of GGX, absorption and bases below coats are said as they are; what remains
+there is what the graph of MaterialX makes of them, which neither bends light in a coat nor widens a lobe by the bend. Facets of other distributions have a fitted roughness. Materials that vary over their surface are compared where their maps have texels of 1, films of a varying thickness in the middle of its range. Patina and flakes are left out on both sides.
+
+Lobe errors of channels that are fainter than a twentieth of the brightest count against that twentieth. Interference makes colours beyond Rec.709: red of `soap-film` is below 0 at 80 degrees, which no formula shows.
 ";
 
 /// Angles that the introduction counts.

@@ -311,6 +311,27 @@ mod tests {
         assert!((found.lobe[0] - lobe).abs() < 0.01, "{found:?} {lobe}");
         assert!((found.albedo[0] - albedo).abs() < 4.0 * 1.5 * 2e-3, "{found:?} {albedo}");
         assert!(found.lobe[1] <= 0.015 && found.albedo[1] <= 2e-3, "{found:?}");
+        // A function beside the light, cell by cell, has the same errors; halves of two views of one stack are that view.
+        let most = |of: Rgb| of.into_iter().fold(0.0, f64::max);
+        let both = |stack: &Stack| [(0.5, stack.clone()), (0.5, stack.clone())];
+        let halves = ColorView::blended(&both(&subject.stack), &color, nm, 50.0, settings(1)).unwrap();
+        for view in [&view, &halves] {
+            let beside = view.compared(|wi, wo| lobes.eval(wi, wo));
+            assert!((most(beside.lobe) - found.lobe[0]).abs() < 1e-9, "{beside:?} {found:?}");
+            let apart = [0, 1, 2].map(|c: usize| (beside.albedo[c] - beside.expected[c]).abs());
+            assert!((most(apart) - found.albedo[0]).abs() < 1e-9, "{beside:?} {found:?}");
+        }
+        // Half a mirror of light below that a black one lacks.
+        let mut dark = subject.stack.clone();
+        dark.layers[1].base = Base::Diffuse(Diffuse { albedo: [0.0; 3], sigma: 0.0 });
+        let mixed =
+            ColorView::blended(&[(0.5, subject.stack.clone()), (0.5, dark.clone())], &color, nm, 50.0, settings(1));
+        let [whole, mixed, dark] = [Some(view), mixed, Some(ColorView::new(&dark, &color, nm, 50.0, settings(1)))]
+            .map(|view| view.unwrap().compared(|_, _| [0.0; 3]).expected);
+        for c in [0, 1, 2] {
+            assert!((mixed[c] - 0.5 * (whole[c] + dark[c])).abs() < 5e-3, "{whole:?} {mixed:?} {dark:?}");
+        }
+        let view = ColorView::new(&subject.stack, &color, nm, 50.0, settings(1));
         // Light that is brighter by a tenth of the albedo, and by a value of 1 at grazing angles.
         let brighter = view
             .errors(|wi| lobes.eval(wi, view.cells.wo).map(|v| v + if wi.z < GRAZING_COS { 1.0 } else { 0.0 }), 1.0);
