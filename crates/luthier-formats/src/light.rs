@@ -36,16 +36,16 @@ impl Settings {
     }
 }
 
-/// What remains at an angle of the eye.
+/// Errors that remain at an angle of the eye.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Residual {
     /// The angle against the normal, degrees.
     pub theta_deg: f64,
     /// Directional albedo by the format's formula.
     pub albedo: Rgb,
-    /// That of the layers.
+    /// Directional albedo of the layers.
     pub expected: Rgb,
-    /// Standard error of that.
+    /// Standard error of the albedo of the layers.
     pub std_err: Rgb,
     /// Share of the light that is elsewhere: half the absolute differences of the cells over the albedo of the layers.
     pub lobe: Rgb,
@@ -93,7 +93,7 @@ impl Light {
         self.views.par_iter().map(|view| view.compared(values)).collect()
     }
 
-    /// What remains of a function.
+    /// Errors of a function, angle by angle.
     pub(crate) fn residuals(&self, values: &(dyn Fn(DVec3, DVec3) -> Rgb + Sync)) -> Vec<Residual> {
         let found = self.compared(values).into_iter().zip(VIEWS_DEG);
         found

@@ -65,7 +65,7 @@ fn three(rgb: [f64; 3]) -> String {
     rgb.map(|c| rounded(c).to_string()).join(", ")
 }
 
-/// What a texture is multiplied with: a number or a colour; or the ends between which it is mixed.
+/// Factor on a texture: a number or a colour; or the ends between which it mixes.
 #[derive(Clone, Copy)]
 enum Factor {
     Number(f64),

@@ -67,7 +67,7 @@ fn materialx_has_inputs_of_the_shader() {
     }
 }
 
-/// What no format has is told: colours below an absorbing coat of glTF, flakes, and the roughness of a diffuse base.
+/// Properties that no format has are told: colours below an absorbing coat of glTF, flakes, and the roughness of a diffuse base.
 #[test]
 fn what_is_lost_is_told() {
     let said = |name: &str, format: Format| {

@@ -49,7 +49,7 @@ fn beside(import: &Import) -> impl Fn(&str) -> io::Result<Vec<u8>> {
     move |name: &str| import.pictures.get(name).cloned().ok_or_else(|| ErrorKind::NotFound.into())
 }
 
-/// What is written of a material, imported again and exported again.
+/// A material, written, imported again and exported again.
 fn again(once: &Exported) -> Exported {
     let files = written(once.format, std::slice::from_ref(once), "test").unwrap();
     let name = once.format.file_name();

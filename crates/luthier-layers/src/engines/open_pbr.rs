@@ -62,7 +62,7 @@ pub fn alphas(roughness: f64, anisotropy: f64) -> [f64; 2] {
     [along.min(1.0), rest * along]
 }
 
-/// What a coat makes of the base below it.
+/// The base as a coat makes it look.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Below {
     /// Slopes.
