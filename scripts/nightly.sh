@@ -13,7 +13,7 @@ cd "$(dirname "$0")/.."
 # Everything is computed: no results of earlier runs.
 export LUTHIER_CACHE=
 
-steps=(tests random fuzz release examples c engines kind packages installed promises python mitsuba scale crash farm gpu book)
+steps=(tests random fuzz release examples c engines formats kind packages installed promises python mitsuba scale crash farm gpu book)
 # By its name only, because an emulator takes half an hour.
 named=(architecture)
 # Steps that take less than a minute of a processor: they are kept up to date with every change.
@@ -26,6 +26,7 @@ declare -A says=(
   [examples]='the renderers in `examples` show the shipped tables, in a browser too'
   [c]='C programs read bakes and faulty files, their ball in OpenGL is that of `preview`, and fragment shaders around baked texts in Vulkan GLSL and HLSL draw it, too'
   [engines]='three.js and Babylon.js read the tables of `luthier table`, in furnaces in a browser'
+  [formats]='the validator of Khronos and the libraries of MaterialX find no fault in exported materials'
   [kind]='a kind of table is added by the six files of CONTRIBUTING.md, and a reflectance model by a folder and a row; both are baked and judged'
   [packages]='every crate is packed, and built from its package'
   [installed]='`cargo install` makes the program from the packed crates with an empty cargo home, and a static one tells the verbs that it lacks by exit code 4'
@@ -52,6 +53,7 @@ declare -A reads=(
   [examples]="lean:luthier-cli lean:luthier-build crates/luthier-material/examples materials examples scripts/run-examples.sh scripts/patience.mjs $built"
   [c]="lean:luthier-cli materials examples/c examples/shaders scripts/c-host.sh $built"
   [engines]="crate:luthier-table crate:luthier-texture crates/luthier-cli/src scripts/engines scripts/patience.mjs $built"
+  [formats]="crate:luthier-formats crates/luthier-cli/src materials scripts/formats.sh scripts/formats $built"
   [kind]="lean:luthier-cli lean:luthier-gpu scripts/add-kind.sh scripts/add-kind.patch scripts/add-model.sh scripts/add-model.patch scripts/patched.sh $built"
   [packages]="crates README.md scripts/package.sh $built"
   [installed]="crates README.md scripts/package.sh scripts/installed.sh $built"
@@ -93,6 +95,10 @@ c() {
 engines() {
   cargo build --locked --release -p luthier-cli
   LUTHIER=$PWD/target/release/luthier ./scripts/engines/furnace.sh
+}
+formats() {
+  cargo build --locked --release -p luthier-cli
+  LUTHIER=$PWD/target/release/luthier ./scripts/formats.sh
 }
 kind() { ./scripts/add-kind.sh && ./scripts/add-model.sh; }
 book() { ./scripts/book.sh; }

@@ -64,6 +64,7 @@ families-plastic() { luthier-lab families --group plastic --group tinted --group
 # By its name only: the first group with the noise of other pages.
 families-metal() { luthier-lab families --group metal --noise 0.005 -o docs/pages/families-metal.md; }
 coats() { luthier-lab coats --noise 0.005 -o docs/pages/coats.md; }
+formats() { luthier-lab formats materials -o docs/pages/formats.md; }
 five-ways() { luthier-lab five-ways -o docs/pages/five-ways.md; }
 varying() { luthier-lab varying --random 8 --noise 0.015 -o docs/pages/varying.md; }
 anisotropic() {
@@ -128,7 +129,7 @@ assets() {
 # The test that follows the tutorial takes its outputs and pictures.
 tutorial() { LUTHIER_ACCEPT=1 cargo test --quiet --locked -p luthier-cli --features view --test cli -- tutorial; }
 
-all=(materials cost shapes devices layouts ladder sets papers budgets scenes parity places textured stability figures models lobes varying families coats five-ways anisotropic environment simulation bench throughput shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference grammar recipes assets tutorial)
+all=(materials cost shapes devices layouts ladder sets papers budgets scenes parity places textured stability figures models lobes varying families coats formats five-ways anisotropic environment simulation bench throughput shader-size distribution-table speed dfg engine-tables by-hand choices reflectance-table reference grammar recipes assets tutorial)
 case ${1-} in
   "") pages=("${all[@]}") ;;
   --cheap) pages=(shader-size reference) ;;

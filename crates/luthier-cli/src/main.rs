@@ -71,6 +71,7 @@ fn main() -> ExitCode {
         Verb::Eval(options) => verb::eval::run(options),
         Verb::Fit(options) => verb::fit::run(options),
         Verb::Import(options) => verb::import::run(options),
+        Verb::Export(options) => verb::export::run(options),
         Verb::Ior(options) => verb::ior::run(options),
         Verb::Schema { scene, surface } => verb::schema::run(*scene, *surface),
         Verb::Completions(options) => verb::completions::run(options),

@@ -49,6 +49,8 @@ pub(crate) enum Verb {
     Coats(CoatsOptions),
     /// Show textured coats five ways, simulated and by four models: a picture, and a page in Markdown
     FiveWays(FiveWaysOptions),
+    /// Compare what glTF, OpenPBR and Standard Surface leave of materials, as a page
+    Formats(FormatsOptions),
     /// Fit lobes to anisotropic stacks, and compare them between the azimuths of their rows with the simulation: a page in Markdown
     Anisotropic(AnisotropicOptions),
     /// Compare the environment that pictures show with sums over all directions: a page in Markdown
@@ -328,6 +330,20 @@ pub(crate) struct FiveWaysOptions {
     /// Picture to write
     #[arg(long, value_name = "FILE", default_value = "docs/images/five-ways.png")]
     pub(crate) picture: PathBuf,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  luthier-lab formats materials -o docs/pages/formats.md\n  luthier-lab formats mine.toml --noise 0.005"
+)]
+pub(crate) struct FormatsOptions {
+    #[command(flatten)]
+    pub(crate) sources: Sources,
+    /// Lobe error that noise of the simulation may cause
+    #[arg(long, value_name = "X", default_value_t = 0.01)]
+    pub(crate) noise: f64,
     #[command(flatten)]
     pub(crate) destination: Destination,
 }

@@ -13,6 +13,7 @@ mod families;
 mod figures;
 mod five_ways;
 mod foreign;
+mod formats;
 mod grammar;
 mod judge;
 mod ladder;
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
         Verb::Families(options) => families::run(options),
         Verb::Coats(options) => coats::run(options),
         Verb::FiveWays(options) => five_ways::run(options),
+        Verb::Formats(options) => formats::run(options),
         Verb::Anisotropic(options) => anisotropic::run(options),
         Verb::Environment(options) => environment::run(options),
         Verb::Simulation(options) => simulation::run(options),

@@ -3,7 +3,7 @@
 
 /// The solution of `a x = b` for a symmetric positive matrix, by Gaussian elimination with pivots on the diagonal alone. An unknown without a
 /// pivot is left open by the system, and becomes 0.
-pub(crate) fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
+pub fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
     let n = b.len();
     for i in 0..n {
         let pivot = a[i][i];
@@ -27,18 +27,18 @@ pub(crate) fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
 }
 
 /// Least squares by Levenberg's and Marquardt's damping.
-pub(crate) struct LeastSquares {
+pub struct LeastSquares {
     /// Longest step of a parameter.
-    pub(crate) longest: f64,
+    pub longest: f64,
     /// Share of the sum of squares below which a gain ends the search.
-    pub(crate) gain: f64,
+    pub gain: f64,
 }
 
 /// A column of a Jacobian within a block: the number of the parameter, and the slopes of the residuals.
-pub(crate) type Column = (usize, Vec<f64>);
+pub type Column = (usize, Vec<f64>);
 
 /// Residuals in blocks, and their slopes.
-pub(crate) trait Residuals {
+pub trait Residuals {
     /// Number of blocks.
     fn blocks(&self) -> usize;
 
@@ -51,10 +51,11 @@ pub(crate) trait Residuals {
 
 /// A place that a search has come to.
 #[derive(Debug, Clone)]
-pub(crate) struct Place {
-    pub(crate) parameters: Vec<f64>,
+pub struct Place {
+    /// Where it is.
+    pub parameters: Vec<f64>,
     /// Sum of the squares.
-    pub(crate) cost: f64,
+    pub cost: f64,
     damping: f64,
     /// Whether the last step gained next to nothing.
     is_still: bool,
@@ -62,7 +63,7 @@ pub(crate) struct Place {
 
 impl Place {
     /// A place to start from.
-    pub(crate) fn new(parameters: Vec<f64>, residuals: &impl Residuals) -> Self {
+    pub fn new(parameters: Vec<f64>, residuals: &impl Residuals) -> Self {
         let cost = sum(&all(residuals, &parameters));
         Self { parameters, cost, damping: 1e-2, is_still: false }
     }
@@ -78,7 +79,7 @@ fn sum(residuals: &[Vec<f64>]) -> f64 {
 
 impl LeastSquares {
     /// Takes up to `steps` steps from a place towards the least residuals, and stops if there is nothing left to gain.
-    pub(crate) fn descend(&self, mut place: Place, residuals: &impl Residuals, steps: u32) -> Place {
+    pub fn descend(&self, mut place: Place, residuals: &impl Residuals, steps: u32) -> Place {
         let mut now = all(residuals, &place.parameters);
         for _ in 0..steps {
             if place.is_still {

@@ -41,7 +41,7 @@ pub mod formulas;
 pub mod frame;
 pub mod furnace;
 pub mod layers;
-mod least_squares;
+pub mod least_squares;
 mod memo;
 pub mod model;
 pub mod models;

@@ -365,6 +365,8 @@ pub struct LayerExtras {
     pub live: Live,
     /// Base colour and metal of a `metallic-roughness` surface, or F0 of a metal, if maps multiply them: the stack has the surface without metal.
     pub metallic: Option<Metallic>,
+    /// Base colour and metal of a `metallic-roughness` surface, or F0 of a metal, as the file states them: the stack has what a coat above makes of them.
+    pub stated: Option<Metallic>,
     /// Smallest and largest texel of the maps of slope parameters.
     pub texels: TexelRanges,
     /// Shares of its light that the base gets back from a coat that does not darken it: the stack has the base brighter than its colour.
@@ -374,7 +376,8 @@ pub struct LayerExtras {
 impl Default for LayerExtras {
     /// A layer that is nothing but physics, and covers all of the surface.
     fn default() -> Self {
-        let (reradiation, film_variation, exponents, metallic, brightening) = (None, None, None, None, None);
+        let (reradiation, film_variation, exponents, brightening) = (None, None, None, None);
+        let (metallic, stated) = (None, None);
         let (maps, live, texels) = (Maps::default(), Live::default(), TexelRanges::default());
         Self {
             weight: 1.0,
@@ -385,6 +388,7 @@ impl Default for LayerExtras {
             maps,
             live,
             metallic,
+            stated,
             texels,
             brightening,
         }

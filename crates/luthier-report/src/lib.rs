@@ -85,8 +85,9 @@ pub use measure::statistics::{
 pub use measure::subject::{FilmMap, FilmSource, Subject, SurfaceMap};
 pub use measure::table_terms::{TableTerms, Weights};
 pub use models::{
-    AgainstReference, MaterialModels, ModelErrors, ModelSettings, ModelSubject, ModelsReport, PHI_DEG, Quantity,
-    Reference, ReferenceSettings, Shown, ViewError, Worst, judge_models, judge_shading_models,
+    AgainstReference, CellDifferences, ColorView, MaterialModels, ModelErrors, ModelSettings, ModelSubject,
+    ModelsReport, PHI_DEG, Quantity, Reference, ReferenceSettings, Shown, ViewError, Worst, judge_models,
+    judge_shading_models,
 };
 pub use parity::{
     AT_PLACES, KNOWN, Known, POLISHED_ALPHAS, Parity, ParityCase, ParityRow, ParitySet, Share, Verdict, parity,

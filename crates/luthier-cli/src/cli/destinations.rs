@@ -39,6 +39,7 @@ impl Verb {
             Self::New(options) => text("--output", options.output.as_deref()),
             Self::Environment(options) => folder("--out", &options.out),
             Self::Import(options) => folder("--output", &options.output),
+            Self::Export(options) => options.output.as_deref().map_or(Ok(()), |path| folder("--output", path)),
             Self::Fit(options) => text("--output", options.output.as_deref()),
             Self::Man(options) => options.out.as_deref().map_or(Ok(()), |path| folder("--out", path)),
             Self::Cache(_)

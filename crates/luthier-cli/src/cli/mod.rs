@@ -106,6 +106,8 @@ pub(crate) enum Verb {
     Fit(FitOptions),
     /// Write material files from the materials of other formats: glTF, physicallybased.info
     Import(ImportOptions),
+    /// Write materials as parameters of other formats: glTF, OpenPBR, Standard Surface
+    Export(ExportOptions),
     /// List the built-in optical constants, or show one set
     Ior(IorOptions),
     /// Print the JSON Schema of material files, of scenes or of surfaces
@@ -439,6 +441,7 @@ mod names;
 pub(crate) use names::NamesOptions;
 
 mod environment;
+mod export;
 pub(crate) use environment::{EnvironmentOptions, LayoutName};
 
 mod fit;
@@ -448,6 +451,7 @@ mod gallery;
 pub(crate) use gallery::GalleryOptions;
 
 mod import;
+pub(crate) use export::ExportOptions;
 pub(crate) use import::ImportOptions;
 
 mod new;

@@ -17,6 +17,7 @@ pub(crate) mod cost;
 pub(crate) mod cost_on;
 pub(crate) mod environment;
 pub(crate) mod eval;
+pub(crate) mod export;
 pub(crate) mod fit;
 pub(crate) mod gallery;
 pub(crate) mod import;

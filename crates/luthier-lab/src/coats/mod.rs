@@ -5,7 +5,6 @@ mod cases;
 mod disney;
 mod filament;
 mod gltf;
-mod materialx;
 mod open_pbr;
 mod page;
 mod scaling;

@@ -5,6 +5,7 @@ mod costs;
 mod figures;
 mod five_ways;
 mod foreign;
+mod formats;
 mod golden;
 mod grammar;
 mod judge;

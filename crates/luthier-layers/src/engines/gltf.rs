@@ -10,18 +10,18 @@
 //!
 //! Out of scope: other extensions, and light between facets, which the formula has not.
 
-use std::f64::consts::{FRAC_1_PI, PI};
+use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 use luthier_optics::Rgb;
 use luthier_optics::dielectric_albedo::JointMasking;
 use luthier_optics::schlick::schlick;
 
+pub use super::facets::ALPHA_MIN;
+use super::facets::{Facets, cos_theta_d};
+
 /// F0 of the coat, of index 1.5, and that of plastics without `KHR_materials_ior`.
 pub const F0: f64 = 0.04;
-
-/// Smallest slope parameter: smaller ones are drawn as this one, which is all but a mirror.
-pub const ALPHA_MIN: f64 = 1e-3;
 
 /// A material at a place.
 ///
@@ -89,47 +89,34 @@ impl Material {
 
     /// The BRDF without the coat, of directions above the surface.
     pub fn base(&self, wi: DVec3, wo: DVec3) -> Rgb {
-        let (sin, cos) = libm::sincos(self.turn);
-        let turned = |w: DVec3| DVec3::new(cos * w.x + sin * w.y, cos * w.y - sin * w.x, w.z);
-        let (lobe, cos_theta_d) = (self.facets(self.alpha, turned(wi), turned(wo)), cos_theta_d(wi, wo));
-        let reflected = self.f0.map(|f0| self.specular * schlick(f0, cos_theta_d));
+        let cos = cos_theta_d(wi, wo);
+        let [plastic, metal] = [self.f0, self.base_color].map(|f0| f0.map(|f0| schlick(f0, cos)));
+        self.base_by([plastic, metal], wi, wo)
+    }
+
+    /// [`Self::base`] with reflectances of plastic and metal at the half vector that are the caller's, such as below a film.
+    pub fn base_by(&self, [plastic, metal]: [Rgb; 2], wi: DVec3, wo: DVec3) -> Rgb {
+        let lobe = Facets { alpha: self.alpha, turn: self.turn }.lobe(self.masking, wi, wo);
+        let reflected = plastic.map(|f| self.specular * f);
         let passed = 1.0 - reflected.into_iter().fold(0.0, f64::max);
         [0, 1, 2].map(|c: usize| {
-            let color = self.base_color[c];
-            let plastic = passed * color * FRAC_1_PI + reflected[c] * lobe;
-            plastic + self.metallic * (schlick(color, cos_theta_d) * lobe - plastic)
+            let plastic = passed * self.base_color[c] * FRAC_1_PI + reflected[c] * lobe;
+            plastic + self.metallic * (metal[c] * lobe - plastic)
         })
     }
 
     /// The BRDF of a base of the BRDF `base` below the coat, if there is one.
     pub fn coated(&self, base: Rgb, wi: DVec3, wo: DVec3) -> Rgb {
         let Some(Coat { weight, alpha }) = self.coat else { return base };
-        let (share, lobe) = (weight * schlick(F0, wo.z), self.facets([alpha; 2], wi, wo));
+        let (share, lobe) = (weight * schlick(F0, wo.z), Facets::isotropic(alpha).lobe(self.masking, wi, wo));
         base.map(|base| base + share * (lobe - base))
     }
-
-    /// `D G / (4 cos_theta_i cos_theta_o)` of GGX, with Smith's masking.
-    fn facets(&self, alpha: [f64; 2], wi: DVec3, wo: DVec3) -> f64 {
-        let [x, y] = alpha.map(|alpha| alpha.max(ALPHA_MIN));
-        let half = (wi + wo).normalize();
-        let below = (half.x / x) * (half.x / x) + (half.y / y) * (half.y / y) + half.z * half.z;
-        let density = 1.0 / (PI * x * y * below * below);
-        let root = |w: DVec3| DVec3::new(x * w.x, y * w.y, w.z).length();
-        let visible = match self.masking {
-            JointMasking::Correlated => 0.5 / (wi.z * root(wo) + wo.z * root(wi)),
-            JointMasking::Separable => 1.0 / ((wi.z + root(wi)) * (wo.z + root(wo))),
-            JointMasking::Incident => 0.5 / ((wi.z + root(wi)) * wo.z),
-        };
-        density * visible
-    }
-}
-
-fn cos_theta_d(wi: DVec3, wo: DVec3) -> f64 {
-    (wi + wo).normalize().dot(wo).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use luthier_optics::dielectric_albedo::reflected_dir;
     use luthier_optics::stack::Distribution;
 

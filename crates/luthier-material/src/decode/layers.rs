@@ -113,6 +113,7 @@ pub(super) fn decode(
             },
             live: live::decode(at, &surface),
             metallic: schlick::textured(at),
+            stated: schlick::stated(at),
             texels: TexelRanges::default(),
             brightening: brightened.map(|below| below.shares),
         };

@@ -136,23 +136,34 @@ pub(super) fn metallic_roughness(
 
 /// Base colour and metal of a `metallic-roughness` layer, where maps of the file multiply them; or F0 of a conductor, where a map does.
 pub(super) fn textured(at: &Section<'_>) -> Option<Metallic> {
+    let is_varied = match at.text("type") {
+        Some("conductor") => maps_f0(at),
+        _ => ["base_color", "metallic", "f0"].iter().any(|key| live::varies(at, key)),
+    };
+    stated(at).filter(|_| is_varied)
+}
+
+/// Base colour and metal of a `metallic-roughness` layer, or F0 of a conductor, as the file has them.
+pub(super) fn stated(at: &Section<'_>) -> Option<Metallic> {
     let of_file = |key: &str| {
         let printed = at.text(key).and_then(printed_f0).map(|printed| printed.map(|value| value.min(1.0)));
         printed.or_else(|| at.reflectance(key))
     };
     let f82_tint = f82_tint(at);
-    if at.text("type") == Some("conductor") {
-        let base_color = of_file("f0").filter(|_| maps_f0(at))?;
-        return Some(Metallic { base_color, metallic: 1.0, f82_tint, dielectric: [DIELECTRIC_F0; 3], is_metal: true });
+    match at.text("type") {
+        Some("conductor") => {
+            let base_color = of_file("f0")?;
+            Some(Metallic { base_color, metallic: 1.0, f82_tint, dielectric: [DIELECTRIC_F0; 3], is_metal: true })
+        }
+        Some("metallic-roughness") => Some(Metallic {
+            base_color: at.reflectance("base_color").unwrap_or([0.0; 3]),
+            metallic: at.number("metallic").unwrap_or(0.0),
+            f82_tint,
+            dielectric: of_file("f0").unwrap_or([DIELECTRIC_F0; 3]),
+            is_metal: false,
+        }),
+        _ => None,
     }
-    let is_varied = ["base_color", "metallic", "f0"].iter().any(|key| live::varies(at, key));
-    (is_varied && at.text("type") == Some("metallic-roughness")).then(|| Metallic {
-        base_color: at.reflectance("base_color").unwrap_or([0.0; 3]),
-        metallic: at.number("metallic").unwrap_or(0.0),
-        f82_tint,
-        dielectric: of_file("f0").unwrap_or([DIELECTRIC_F0; 3]),
-        is_metal: false,
-    })
 }
 
 /// Whether a map multiplies the F0 of a layer.

@@ -24,6 +24,9 @@ pub(crate) const GRAZING_COS: f64 = 0.05;
 /// Least cosine of an eye whose grazing light is compared: 78.5 degrees.
 const STEEP_COS: f64 = 4.0 * GRAZING_COS;
 
+/// Share of the brightest channel's albedo that lobe errors of fainter ones count against.
+const FAINT: f64 = 0.05;
+
 /// Paths of a family. The spread of families measures the noise.
 const FAMILY: u64 = 2048;
 
@@ -31,14 +34,34 @@ const FAMILY: u64 = 2048;
 const FIRST_FAMILIES: u64 = 8;
 
 /// Light of a stack towards an eye at one angle, in the colour of a material.
+///
+/// Its cells are those of [`crate::judge_models`]: half vectors around the mirror direction.
 #[derive(Debug)]
-pub(crate) struct ColorView {
+pub struct ColorView {
     cells: Cells,
     is_symmetric: bool,
     /// Simulated energies of each family by cell, then that of grazing light, without the light that met one facet of the first interface alone.
     families: Vec<Vec<Rgb>>,
     /// Energies of the light that met one facet of the first interface alone, in the same order: a closed form without noise.
     single: Vec<Rgb>,
+}
+
+/// A function beside the light of a stack, cell by cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellDifferences {
+    /// Energies of the function less those of the stack, by cell.
+    pub differences: Vec<Rgb>,
+    /// Directional albedo of the function.
+    pub albedo: Rgb,
+    /// Directional albedo of the stack.
+    pub expected: Rgb,
+    /// Standard error of that of the stack.
+    pub std_err: Rgb,
+    /// Lobe error by channel: half the absolute differences over the albedo of the stack, or over a twentieth of that of the brightest channel, where that is more. Colours
+    /// beyond Rec.709 have channels below 0.
+    pub lobe: Rgb,
+    /// Lobe error that noise alone causes on average.
+    pub lobe_floor: Rgb,
 }
 
 /// Errors of a function at a view, each with the noise of the reference.
@@ -59,7 +82,7 @@ pub(crate) struct ViewErrors {
 
 impl ColorView {
     /// Traces a stack with an interface, from an angle against the normal, until the noise is within the settings or the paths are spent.
-    pub(crate) fn new(stack: &Stack, color: &Color, nm: [f64; 3], theta_deg: f64, settings: ReferenceSettings) -> Self {
+    pub fn new(stack: &Stack, color: &Color, nm: [f64; 3], theta_deg: f64, settings: ReferenceSettings) -> Self {
         let cells = Cells::new(direction(theta_deg, PHI_DEG));
         let is_symmetric = is_isotropic(stack);
         let paths = ColorPaths::new(stack, color);
@@ -97,6 +120,52 @@ impl ColorView {
                 return view;
             }
             wanted = ((wanted as f64 * (1.1 * lack * lack).clamp(1.2, 4.0)) as u64).clamp(wanted + 1, most);
+        }
+    }
+
+    /// Traces a surface that is each stack on a share of itself, such as one whose coat leaves it bare in places. Shares sum to 1; `None` without stacks.
+    pub fn blended(
+        parts: &[(f64, Stack)],
+        color: &Color,
+        nm: [f64; 3],
+        theta_deg: f64,
+        settings: ReferenceSettings,
+    ) -> Option<Self> {
+        let mut views = parts.iter().map(|(share, stack)| (*share, Self::new(stack, color, nm, theta_deg, settings)));
+        let (share, mut all) = views.next()?;
+        scale(&mut all.single, share);
+        all.families.iter_mut().for_each(|family| scale(family, share));
+        for (share, mut view) in views {
+            all.is_symmetric &= view.is_symmetric;
+            all.families.truncate(view.families.len());
+            scale(&mut view.single, share);
+            add(&mut all.single, &view.single);
+            for (sum, mut family) in all.families.iter_mut().zip(view.families) {
+                scale(&mut family, share);
+                add(sum, &family);
+            }
+        }
+        Some(all)
+    }
+
+    /// A function `f cos_theta_i` of the directions to the light and to the eye beside this light.
+    pub fn compared(&self, values: impl Fn(DVec3, DVec3) -> Rgb) -> CellDifferences {
+        let found = Energies::of_values(|wi| values(wi, self.cells.wo), &self.cells, self.is_symmetric);
+        let difference = |cell: usize| [0, 1, 2].map(|c: usize| found[c].energies[cell] - self.energy(cell, c));
+        let differences: Vec<Rgb> = (0..CELLS).map(difference).collect();
+        let expected = [0, 1, 2].map(|c: usize| self.albedo(c));
+        let least = FAINT * expected.into_iter().fold(0.0, f64::max);
+        let over = expected.map(|albedo| albedo.max(least).max(f64::MIN_POSITIVE));
+        CellDifferences {
+            albedo: [0, 1, 2].map(|c: usize| found[c].energies.iter().sum()),
+            expected,
+            std_err: [0, 1, 2].map(|c: usize| self.deviation(c, |_| 1.0)),
+            lobe: [0, 1, 2].map(|c: usize| {
+                let moved: f64 = differences.iter().map(|cell| cell[c].abs()).sum();
+                0.5 * moved / over[c]
+            }),
+            lobe_floor: [0, 1, 2].map(|c: usize| self.noise(c) / over[c]),
+            differences,
         }
     }
 
@@ -148,8 +217,12 @@ impl ColorView {
     }
 
     fn lobe_floor(&self, c: usize) -> f64 {
-        let deviations = (0..CELLS).map(|cell| self.variance(|family| family[cell][c]).sqrt()).sum();
-        energy_that_noise_moves(deviations) / self.albedo(c)
+        self.noise(c) / self.albedo(c)
+    }
+
+    /// Energy that noise moves.
+    fn noise(&self, c: usize) -> f64 {
+        energy_that_noise_moves((0..CELLS).map(|cell| self.variance(|family| family[cell][c]).sqrt()).sum())
     }
 
     /// Standard error of a sum of energies with factors.
@@ -164,6 +237,14 @@ impl ColorView {
         let mean = values.iter().sum::<f64>() / count;
         values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (count * (count - 1.0))
     }
+}
+
+fn scale(energies: &mut [Rgb], share: f64) {
+    energies.iter_mut().flatten().for_each(|energy| *energy *= share);
+}
+
+fn add(sums: &mut [Rgb], energies: &[Rgb]) {
+    sums.iter_mut().flatten().zip(energies.iter().flatten()).for_each(|(sum, energy)| *sum += energy);
 }
 
 /// Energies by cell, then that of grazing light, of the light that meets one facet of the first interface alone. It has a closed form in the colour of
@@ -230,6 +311,27 @@ mod tests {
         assert!((found.lobe[0] - lobe).abs() < 0.01, "{found:?} {lobe}");
         assert!((found.albedo[0] - albedo).abs() < 4.0 * 1.5 * 2e-3, "{found:?} {albedo}");
         assert!(found.lobe[1] <= 0.015 && found.albedo[1] <= 2e-3, "{found:?}");
+        // A function beside the light, cell by cell, has the same errors; halves of two views of one stack are that view.
+        let most = |of: Rgb| of.into_iter().fold(0.0, f64::max);
+        let both = |stack: &Stack| [(0.5, stack.clone()), (0.5, stack.clone())];
+        let halves = ColorView::blended(&both(&subject.stack), &color, nm, 50.0, settings(1)).unwrap();
+        for view in [&view, &halves] {
+            let beside = view.compared(|wi, wo| lobes.eval(wi, wo));
+            assert!((most(beside.lobe) - found.lobe[0]).abs() < 1e-9, "{beside:?} {found:?}");
+            let apart = [0, 1, 2].map(|c: usize| (beside.albedo[c] - beside.expected[c]).abs());
+            assert!((most(apart) - found.albedo[0]).abs() < 1e-9, "{beside:?} {found:?}");
+        }
+        // Half a mirror of light below that a black one lacks.
+        let mut dark = subject.stack.clone();
+        dark.layers[1].base = Base::Diffuse(Diffuse { albedo: [0.0; 3], sigma: 0.0 });
+        let mixed =
+            ColorView::blended(&[(0.5, subject.stack.clone()), (0.5, dark.clone())], &color, nm, 50.0, settings(1));
+        let [whole, mixed, dark] = [Some(view), mixed, Some(ColorView::new(&dark, &color, nm, 50.0, settings(1)))]
+            .map(|view| view.unwrap().compared(|_, _| [0.0; 3]).expected);
+        for c in [0, 1, 2] {
+            assert!((mixed[c] - 0.5 * (whole[c] + dark[c])).abs() < 5e-3, "{whole:?} {mixed:?} {dark:?}");
+        }
+        let view = ColorView::new(&subject.stack, &color, nm, 50.0, settings(1));
         // Light that is brighter by a tenth of the albedo, and by a value of 1 at grazing angles.
         let brighter = view
             .errors(|wi| lobes.eval(wi, view.cells.wo).map(|v| v + if wi.z < GRAZING_COS { 1.0 } else { 0.0 }), 1.0);

@@ -37,6 +37,7 @@ use luthier_layers::registry::models;
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;
 
+pub use colored::{CellDifferences, ColorView};
 use compare::compare;
 use energies::Energies;
 pub use reference::{Reference, ReferenceSettings, Shown};

@@ -1,6 +1,7 @@
 //! Bakes: what is written, what is refused, and which tables are made.
 
 mod containers;
+mod export;
 mod folder;
 mod import;
 mod lobes;

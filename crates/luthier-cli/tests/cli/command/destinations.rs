@@ -53,6 +53,7 @@ fn a_hyphen_is_standard_output_or_refused() {
         &["bake", "m.toml", "--out", "-"],
         &["bake", "m.toml", "--depfile", "-"],
         &["environment", "--sky", "clear-day", "--out", "-"],
+        &["export", "m.toml", "--to", "gltf", "-o", "-"],
         &["man", "--out", "-"],
     ] {
         workshop.run(words).fails(2, &["`-`"]).says(&["./-"]);
@@ -73,6 +74,7 @@ fn files_and_folders_are_told_apart() {
         &["table", "energy", "--preset", "cycles", "-o", "file"],
         &["bake", "m.toml", "--out", "file"],
         &["environment", "--sky", "clear-day", "--out", "file"],
+        &["export", "m.toml", "--to", "gltf", "-o", "file"],
         &["man", "--out", "file"],
     ] {
         workshop

@@ -17,6 +17,7 @@ const CALLED: [&str; 19] = [
     "run-examples.sh",
     "c-host.sh",
     "engines/furnace.sh",
+    "formats.sh",
     "add-kind.sh",
     "add-model.sh",
     "package.sh",
@@ -48,6 +49,7 @@ const ALL: [&str; 17] = [
     "engines",
     "examples",
     "farm",
+    "formats",
     "fuzz",
     "gpu",
     "installed",
@@ -106,6 +108,7 @@ impl Repository {
             "scripts/add-kind.patch",
             "scripts/add-model.patch",
             "scripts/patched.sh",
+            "scripts/formats/validate.mjs",
             "scripts/patience.mjs",
         ] {
             workshop.write(file, "");
@@ -198,7 +201,10 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         ("docs/pages/nightly.md", &[]),
         ("docs/proof.md", &["book"]),
         ("docs/measurements/stability.json", &["book", "tests"]),
-        ("materials/gold.toml", &["c", "examples", "farm", "fuzz", "gpu", "python", "random", "release", "tests"]),
+        (
+            "materials/gold.toml",
+            &["c", "examples", "farm", "formats", "fuzz", "gpu", "python", "random", "release", "tests"],
+        ),
         ("examples/wgpu/main.rs", &["examples"]),
         ("examples/farm/job", &["examples", "farm"]),
         ("examples/c/ball.c", &["c", "examples"]),
@@ -223,6 +229,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
                 "crash",
                 "examples",
                 "farm",
+                "formats",
                 "fuzz",
                 "gpu",
                 "kind",
