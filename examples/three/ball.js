@@ -9,9 +9,12 @@ run(async ({ renderer: kind, size, material, lights, background, fov_y_deg, eye_
   const scene = new THREE.Scene();
   scene.background = new THREE.Color(...background);
   scene.add(new THREE.Mesh(ball(THREE), bake.material(material, { slopeVariance })));
-  for (const { direction, irradiance } of lights) {
-    const light = new THREE.DirectionalLight(new THREE.Color(...irradiance));
-    light.position.set(...direction);
+  for (const { direction, position, irradiance } of lights) {
+    // Irradiance of a lamp at a position is that at the centre.
+    const light = position
+      ? new THREE.PointLight(new THREE.Color(...irradiance), new THREE.Vector3(...position).lengthSq())
+      : new THREE.DirectionalLight(new THREE.Color(...irradiance));
+    light.position.set(...(position ?? direction));
     scene.add(light);
   }
   const camera = new THREE.PerspectiveCamera(fov_y_deg, 1, 0.1, 100);

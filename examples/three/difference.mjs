@@ -6,20 +6,22 @@ import path from "node:path";
 import { fileURLToPath } from "node:url";
 import { inflateSync } from "node:zlib";
 
-/** Median, 95 %, 99 % and the largest difference, and the number of pixels. */
-export async function difference(a, b) {
+/** Median, 95 %, 99 % and the largest difference, and the number of pixels. `shown` tells of a pixel of each picture whether it counts. */
+export async function difference(a, b, shown = (p, q) => isLit(p) || isLit(q)) {
   const [left, right] = await Promise.all([a, b].map(read));
   if (left.width !== right.width || left.height !== right.height) throw new Error(`${a} and ${b} differ in size`);
   const apart = [];
   for (let i = 0; i < left.width * left.height; i++) {
     const [p, q] = [left, right].map(({ texels, channels }) => texels.subarray(channels * i, channels * i + 3));
-    if (p.some((value) => value > 0) || q.some((value) => value > 0)) apart.push(Math.max(...p.map((value, c) => Math.abs(value - q[c])), ...q.map((value, c) => Math.abs(value - p[c]))));
+    if (shown(p, q)) apart.push(Math.max(...[0, 1, 2].map((c) => Math.abs(p[c] - q[c]))));
   }
   if (!apart.length) throw new Error(`${a} and ${b} are black`);
   apart.sort((x, y) => x - y);
   const at = (share) => apart[Math.min(Math.floor(share * apart.length), apart.length - 1)];
   return { pixels: apart.length, median: at(0.5), p95: at(0.95), p99: at(0.99), most: apart.at(-1) };
 }
+
+export const isLit = (pixel) => pixel.some((value) => value > 0);
 
 /** Texels of a PNG of 8-bit RGB or RGBA. */
 async function read(file) {

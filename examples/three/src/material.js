@@ -7,6 +7,7 @@ export class LuthierMaterial extends ShaderMaterial {
     super({ lights: true, fog: true, defines: { USE_TANGENT: "" }, ...programOf(bake) });
     const { number, entry } = bake.find(name);
     const { kinds, rows, factors, base } = bake.surface.uniformsOf(entry);
+    this.type = "LuthierMaterial";
     this.name = name;
     this.uniforms = {
       ...UniformsUtils.merge([UniformsLib.lights, UniformsLib.fog]),
