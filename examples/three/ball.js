@@ -2,10 +2,11 @@
 
 import { driver, open, run, show } from "./page.js";
 
-run(async ({ renderer: kind, size, material, lights, background, fov_y_deg, eye_distance, slope_variance: slopeVariance, environment }) => {
+run(async ({ renderer: kind, size, material, lights, background, fov_y_deg, eye_distance, slope_variance: slopeVariance, environment, tone }) => {
   const { THREE, LuthierLoader, LuthierEnvironmentLoader, renderer } = await open(kind, size);
   const bake = await new LuthierLoader().loadAsync("bake/manifest.json");
   if (environment) bake.environment = await new LuthierEnvironmentLoader().loadAsync(`scene/${environment}`);
+  if (tone) renderer.toneMapping = THREE[tone];
   const scene = new THREE.Scene();
   scene.background = new THREE.Color(...background);
   scene.add(new THREE.Mesh(ball(THREE), bake.material(material, { slopeVariance })));
@@ -24,7 +25,7 @@ run(async ({ renderer: kind, size, material, lights, background, fov_y_deg, eye_
 
 /** A ball whose texture coordinates begin at the top, behind: those of `luthier preview --shape sphere`. */
 function ball(THREE) {
-  const geometry = new THREE.SphereGeometry(1, 256, 128);
+  const geometry = new THREE.SphereGeometry(1, 128, 64);
   const { uv } = geometry.attributes;
   for (let i = 0; i < uv.count; i++) uv.setXY(i, uv.getX(i) + 0.25, 1 - uv.getY(i));
   return geometry;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Shows .glb files in three.js, by WebGL 2 and by WebGPU, with the materials that `luthier import` and `luthier bake` make of theirs, and compares the pictures with those of
-# `luthier preview`: compare.sh OUT [FILE.glb...]. Without files, those of samples.mjs. Pictures are left in OUT. Three lamps light them and cast shadows;
-# the surroundings are black, because the page has no light from all around.
+# Shows .glb files in three.js, by WebGL 2 and by WebGPU, with the materials that `luthier import` and `luthier bake` make of theirs, and compares the
+# pictures with those of `luthier preview`: compare.sh OUT [FILE.glb...]. Without files, those of samples.mjs. Pictures are left in OUT. Three lamps light
+# them and cast shadows; the surroundings are black.
 # Needs a Vulkan driver, Chromium, and `npm ci` in this folder. The environment variable LUTHIER names the program that bakes; by default cargo builds it.
 set -euo pipefail
 [ $# -gt 0 ] || { echo "usage: compare.sh OUT [FILE.glb...]" >&2; exit 2; }
@@ -13,7 +13,7 @@ for file in "$@"; do files+=("$(realpath "$file")"); done
 cd "$(dirname "$0")/../.."
 
 # The most that pixels may be apart in the median, in 8-bit steps of the channel that is farthest.
-limits=(2)
+limits=(3)
 size=512
 # Irradiance of each lamp, and directions to them.
 irradiance=1.0,0.95,0.9

@@ -70,6 +70,11 @@ async function lights({ THREE, bake, renderer, isGpu }, { material, floor }) {
   figures.spot_off = spot.reduce((off, value, i) => (i % 4 < 3 && value > 0 ? Math.max(off, Math.abs(value - bare[i]) / bare[i]) : off), 0);
   figures.outside_of_cone = count(bare, (_, i) => bare[i] > 1e-3 && spot[i] === 0);
   figures.programs = programs(renderer);
+  // Thick fog is all that is seen; it needs another program.
+  scene.fog = new THREE.Fog(new THREE.Color(0.2, 0.3, 0.4), 0.1, 0.2);
+  for (const mesh of [ball, ground]) mesh.material = mesh.material.clone();
+  const fog = await lit(kinds);
+  figures.fog_off = all.reduce((off, value, i) => (i % 4 === 0 && value > 0 ? Math.max(off, ...[0.2, 0.3, 0.4].map((c, k) => Math.abs(fog[i + k] - c))) : off), 0);
   return { pixels: all, figures };
 }
 

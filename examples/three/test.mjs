@@ -3,7 +3,8 @@
 // - Three kinds of lamps with shadows, against sums of single ones.
 // - Sixty materials, five of them with textures: one program.
 // - Wrong bakes are named.
-// Needs a Vulkan driver and `npm ci` in this folder. The environment variable LUTHIER names the program that bakes, CHROMIUM the browser.
+// Needs a Vulkan driver and `npm ci` in this folder. The environment variable LUTHIER names the program that bakes; by default cargo builds it. CHROMIUM
+// names the browser.
 
 import { execFile } from "node:child_process";
 import { mkdir, readFile, stat, writeFile } from "node:fs/promises";
@@ -21,7 +22,8 @@ if (!out) {
 await mkdir(out, { recursive: true });
 
 const call = async (program, args) => (await promisify(execFile)(program, args, { cwd: root, maxBuffer: 1 << 26 })).stdout;
-const luthier = (...args) => call(process.env.LUTHIER ?? path.join(root, "target/debug/luthier"), args);
+const CARGO = ["run", "--locked", "--quiet", "-p", "luthier-cli", "--bin", "luthier", "--"];
+const luthier = (...args) => (process.env.LUTHIER ? call(process.env.LUTHIER, args) : call("cargo", [...CARGO, ...args]));
 const failures = [];
 const check = (holds, words) => {
   console.log(`${holds ? "holds" : "FAILS"}: ${words}`);
@@ -76,12 +78,20 @@ async function balls() {
       check(median <= 2, `${name} by ${renderer} against preview: median ${median} of 255, 95 % within ${p95}, 99 % within ${p99}, largest ${most}, ${pixels} pixels`);
     }
   }
+
+  // A tone curve of three.js, by its two renderers; without it the pictures are others.
+  const toned = (renderer) => path.join(out, `toned-${renderer}.png`);
+  for (const renderer of RENDERERS) {
+    await page("index.html", plain, { ...BALL, ...far, renderer, material: "red-lacquer", tone: "ACESFilmicToneMapping" }, `toned-${renderer}`);
+  }
+  const [same, other] = [await difference(...RENDERERS.map(toned)), await difference(toned("webgl"), path.join(out, "red-lacquer-webgl.png"))];
+  check(same.p99 <= 1 && other.median > 5, `a tone curve: ${same.p99} of 255 between the renderers (99 %), ${other.median} against none (median)`);
   return plain;
 }
 
 async function lamps(bake) {
   for (const renderer of RENDERERS) {
-    const { lit, shadowed, sum_off, spot_off, outside_of_cone, programs } = JSON.parse(
+    const { lit, shadowed, sum_off, spot_off, outside_of_cone, programs, fog_off } = JSON.parse(
       await page("test.html", bake, { renderer, scene: "lights", material: "red-lacquer", floor: "red-lacquer" }, `lights-${renderer}`),
     );
     for (const kind of Object.keys(lit)) {
@@ -89,6 +99,7 @@ async function lamps(bake) {
     }
     check(sum_off < 1e-5, `three lamps by ${renderer} are the sum of single ones: ${sum_off.toExponential(1)} of the brightest off`);
     check(spot_off < 1e-3 && outside_of_cone > 1000, `a spot by ${renderer} is a lamp within its cone: ${spot_off.toExponential(1)} off, ${outside_of_cone} pixels outside`);
+    check(fog_off < 1e-3, `thick fog by ${renderer} has its colour: ${fog_off.toExponential(1)} off`);
     // The other renderer counts programs of shadows, too.
     if (renderer === "webgl") check(programs === 1, `a ball and a floor by ${renderer}: ${programs} program`);
   }

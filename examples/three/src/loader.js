@@ -1,39 +1,57 @@
 // Reads the folder of a bake. What three.js draws with decides the language of the shader and the class of the materials: src/index.js and src/webgpu.js.
 
-import { ImageBitmapLoader, LinearFilter, LinearMipmapLinearFilter, Loader, RepeatWrapping, SRGBColorSpace, Texture } from "three";
+import { FileLoader, ImageBitmapLoader, LinearFilter, LinearMipmapLinearFilter, Loader, RepeatWrapping, SRGBColorSpace, Texture } from "three";
 import { LuthierBake } from "./bake.js";
 import { cubeTexture, tableTexture, unfiltered } from "./ktx2.js";
 
 /** The version of the manifest that this package reads. */
 const SCHEMA = 4;
 
+/** Loads a file of JSON and the files that it names, which are beside it. */
+class FolderLoader extends Loader {
+  load(url, onLoad, onProgress, onError) {
+    this.loadAsync(url).then(onLoad, onError ?? console.error);
+  }
+
+  base(url) {
+    return new URL(url, new URL(this.path || ".", document.baseURI));
+  }
+
+  file(url, type) {
+    const loader = new FileLoader(this.manager).setResponseType(type).setRequestHeader(this.requestHeader).setWithCredentials(this.withCredentials);
+    return loader.loadAsync(url.href);
+  }
+
+  async json(url) {
+    const text = await this.file(url, "text");
+    try {
+      return JSON.parse(text);
+    } catch (error) {
+      throw new Error(`${url} is no JSON: ${error.message}`);
+    }
+  }
+}
+
 /** Loads `manifest.json` of a bake, and the shader, tables and maps that it names. A subclass says for which renderer. */
-export class BakeLoader extends Loader {
+export class BakeLoader extends FolderLoader {
   /** Whether maps get mipmaps. `luthier preview` reads level 0 alone. */
   mipmaps = true;
 
-  load(url, onLoad, onProgress, onError) {
-    this.loadAsync(url, onProgress).then(onLoad, onError ?? console.error);
-  }
-
   async loadAsync(url) {
-    const base = new URL(url, new URL(this.path || ".", document.baseURI));
-    const manifest = await json(base);
+    const base = this.base(url);
+    const manifest = await this.json(base);
     const bad = problem(manifest, this.target);
     if (bad) throw new Error(`${base}: ${bad}`);
-    const file = (path) => get(new URL(path, base));
+    const file = (path, type = "arraybuffer") => this.file(new URL(path, base), type);
 
     const { file: shader, interface: known } = manifest.shaders.find((shader) => isBaked(shader, this.target));
-    const [text, words] = await Promise.all([
-      file(shader.path).then((response) => response.text()),
-      file(manifest.material_buffer.path).then(async (response) => new Float32Array(await response.arrayBuffer())),
-    ]);
+    const [text, words] = await Promise.all([file(shader.path, "text"), file(manifest.material_buffer.path)]);
     const tables = await each(manifest.bindings.filter(({ resource }) => resource === "texture_2d<f32>"), async ({ name }) => {
       const { texture, format } = manifest.tables.find(({ kind }) => name === `luthier_${kind}`);
-      return [name, await tableTexture(await (await file(texture.path)).arrayBuffer(), format)];
+      return [name, await tableTexture(await file(texture.path), format)];
     });
     const maps = await each(distinctMaps(manifest), async ([key, map]) => [key, await this.#map(new URL(map.file.path, base), map)]);
-    return new LuthierBake({ manifest, text, interface: known, words, tables, maps, Material: this.Material });
+    return new LuthierBake({ manifest, text, interface: known, words: new Float32Array(words), tables, maps, Material: this.Material });
   }
 
   /** The texture of a map: its first row is at v = 0, and its numbers are those of the file. The browser reads 16 bits as 8. */
@@ -54,18 +72,14 @@ export class BakeLoader extends Loader {
 }
 
 /** Loads `environment.json` of the command `luthier environment --layout cube`: the two cubes of a surrounding. */
-export class LuthierEnvironmentLoader extends Loader {
-  load(url, onLoad, onProgress, onError) {
-    this.loadAsync(url, onProgress).then(onLoad, onError ?? console.error);
-  }
-
+export class LuthierEnvironmentLoader extends FolderLoader {
   async loadAsync(url) {
-    const base = new URL(url, new URL(this.path || ".", document.baseURI));
-    const { textures } = await json(base);
+    const base = this.base(url);
+    const { textures } = await this.json(base);
     const cube = async (content) => {
       const entry = textures?.find((texture) => texture.content === content && texture.layout === "cube");
       if (!entry) throw new Error(`${base} names no cube of the ${content}: make it with luthier environment --layout cube`);
-      return cubeTexture(await (await get(new URL(entry.path, base))).arrayBuffer());
+      return cubeTexture(await this.file(new URL(entry.path, base), "arraybuffer"));
     };
     const [environment, irradiance] = await Promise.all(["environment", "irradiance"].map(cube));
     return { environment, irradiance };
@@ -97,19 +111,4 @@ function distinctMaps({ materials }) {
 
 async function each(list, load) {
   return new Map(await Promise.all(list.map(load)));
-}
-
-async function json(url) {
-  const text = await (await get(url)).text();
-  try {
-    return JSON.parse(text);
-  } catch (error) {
-    throw new Error(`${url} is no JSON: ${error.message}`);
-  }
-}
-
-async function get(url) {
-  const response = await fetch(url);
-  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
-  return response;
 }

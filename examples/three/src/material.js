@@ -1,8 +1,10 @@
 // A material of a bake for WebGLRenderer: lights, shadows, fog and tone curve are those of three.js.
 
-import { DataTexture, FloatType, RGBAFormat, ShaderMaterial, UniformsLib, UniformsUtils } from "three";
+import { DataTexture, FloatType, Material, RGBAFormat, ShaderMaterial, UniformsLib, UniformsUtils } from "three";
 
 export class LuthierMaterial extends ShaderMaterial {
+  #clone;
+
   constructor(bake, name, { slopeVariance = 0, ...parameters } = {}) {
     super({ lights: true, fog: true, defines: { USE_TANGENT: "" }, ...programOf(bake) });
     const { number, entry } = bake.find(name);
@@ -24,6 +26,12 @@ export class LuthierMaterial extends ShaderMaterial {
     // Tangents of geometries without any; the shader makes some of the texture coordinates.
     this.defaultAttributeValues = { ...this.defaultAttributeValues, tangent: [0, 0, 0, 0] };
     this.setValues(parameters);
+    this.#clone = () => bake.material(name, { slopeVariance: this.slopeVariance });
+  }
+
+  /** Another material of the bake's program. */
+  clone() {
+    return Material.prototype.copy.call(this.#clone(), this);
   }
 
   get isLuthierMaterial() {

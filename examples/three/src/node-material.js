@@ -1,6 +1,6 @@
 // A material of a bake for WebGPURenderer: the WGSL of the bake, called by the loop over the lights that three.js has.
 
-import { Matrix3, Vector3, Vector4 } from "three";
+import { Material, Matrix3, Vector3, Vector4 } from "three";
 import { CodeNode, LightingModel, LightingNode, NodeMaterial, StorageBufferAttribute } from "three/webgpu";
 import {
   cameraViewMatrix, determinant, materialReference, modelViewMatrix, modelWorldMatrix, normalView, positionView, positionViewDirection, reference, sign, storage,
@@ -24,6 +24,12 @@ export class LuthierNodeMaterial extends NodeMaterial {
     /** What the nodes of the bake read of this material. */
     this.luthier = { bake, number, textures: bake.texturesOf(entry), ...bake.surface.uniformsOf(entry) };
     this.setValues(parameters);
+  }
+
+  /** Another material with the bake's nodes. */
+  clone() {
+    const { bake, number } = this.luthier;
+    return Material.prototype.copy.call(bake.material(bake.names[number], { slopeVariance: this.slopeVariance }), this);
   }
 
   get isLuthierNodeMaterial() {
