@@ -3,7 +3,7 @@
 import { driver, open, png, run } from "./page.js";
 
 const SIZE = 256;
-const SCENES = { lights, set };
+const SCENES = { lights, moved, set };
 
 run(async ({ renderer: kind, scene, ...rest }) => {
   const host = await open(kind, SIZE);
@@ -76,6 +76,47 @@ async function lights({ THREE, bake, renderer, isGpu }, { material, floor }) {
   const fog = await lit(kinds);
   figures.fog_off = all.reduce((off, value, i) => (i % 4 === 0 && value > 0 ? Math.max(off, ...[0.2, 0.3, 0.4].map((c, k) => Math.abs(fog[i + k] - c))) : off), 0);
   return { pixels: all, figures };
+}
+
+/** Balls that instances, a bone and a morph target move, against balls at the same places. */
+async function moved({ THREE, bake, renderer, isGpu }) {
+  const scene = new THREE.Scene();
+  const lamp = new THREE.DirectionalLight(0xffffff, 3);
+  lamp.position.set(1, 2, 3);
+  scene.add(lamp);
+  const camera = new THREE.OrthographicCamera(-1.5, 1.5, 1.5, -1.5, 0.1, 20);
+  camera.position.z = 10;
+  const shoot = exposure(THREE, renderer, isGpu, scene, camera, SIZE);
+  const material = bake.material("red-lacquer");
+  const ball = new THREE.SphereGeometry(0.45, 48, 24);
+  const { count: vertices } = ball.attributes.position;
+  const matrix = (x, y) => new THREE.Matrix4().makeTranslation(x, y, 0);
+
+  const instances = new THREE.InstancedMesh(ball, material, 3);
+  for (const i of [0, 1, 2]) instances.setMatrixAt(i, matrix(i - 1, 0.5));
+  const skinned = new THREE.SkinnedMesh(ball.clone(), material);
+  skinned.geometry.setAttribute("skinIndex", new THREE.Uint16BufferAttribute(new Uint16Array(4 * vertices), 4));
+  skinned.geometry.setAttribute("skinWeight", new THREE.Float32BufferAttribute(Float32Array.from({ length: 4 * vertices }, (_, i) => Number(i % 4 === 0)), 4));
+  const bone = new THREE.Bone();
+  skinned.add(bone);
+  skinned.bind(new THREE.Skeleton([bone]));
+  bone.position.set(-0.5, -0.5, 0);
+  const morphed = new THREE.Mesh(ball.clone(), material);
+  morphed.geometry.morphAttributes.position = [ball.attributes.position.clone().applyMatrix4(matrix(0.5, -0.5))];
+  morphed.updateMorphTargets();
+  morphed.morphTargetInfluences[0] = 1;
+  scene.add(instances, skinned, morphed);
+  const pixels = await shoot();
+
+  scene.remove(instances, skinned, morphed);
+  for (const [x, y] of [[-1, 0.5], [0, 0.5], [1, 0.5], [-0.5, -0.5], [0.5, -0.5]]) {
+    const mesh = new THREE.Mesh(ball, material);
+    mesh.applyMatrix4(matrix(x, y));
+    scene.add(mesh);
+  }
+  const meshes = await shoot();
+  const off = pixels.reduce((off, value, i) => Math.max(off, Math.abs(value - meshes[i])), 0);
+  return { pixels, figures: { off, lit: count(meshes, (value) => value > 1e-3) } };
 }
 
 /** A part for each material of the bake. */
