@@ -1,6 +1,6 @@
 // Renders the page of an example in a Chromium without a window: node browser.mjs PAGE BAKE SCENE PNG
-// PAGE is the folder of the example, or an HTML file in it. The page finds the folder of SCENE at /scene/. Without PNG it serves the page until it is
-// stopped, for a browser with a window. The environment variable CHROMIUM names the program.
+// PAGE is the folder of the example, or an HTML file in it. The page finds the folder of SCENE at /scene/. Figures that a page measures are printed as
+// JSON. Without PNG it serves the page until it is stopped, for a browser with a window. The environment variable CHROMIUM names the program.
 
 import { spawn } from "node:child_process";
 import { mkdtemp, readFile, rm, writeFile } from "node:fs/promises";
@@ -63,6 +63,8 @@ if (!picture) {
 } else {
   const profile = await mkdtemp(path.join(tmpdir(), "luthier-browser-"));
   const flags = ["--headless=new", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run", `--user-data-dir=${profile}`];
+  // WebGPU on the software driver, too.
+  flags.push("--enable-unsafe-webgpu", "--use-webgpu-adapter=swiftshader");
   // The sandbox of Chromium does not start as root.
   if (process.getuid?.() === 0) flags.push("--no-sandbox");
   const browser = spawn(process.env.CHROMIUM ?? "chromium", [...flags, `${address}?save`], { stdio: "ignore" });
@@ -72,10 +74,11 @@ if (!picture) {
   });
   const { failed: hung } = patience(browser.pid);
   try {
-    const { picture: data, driver, error } = await Promise.race([answer, failed, hung]);
+    const { picture: data, driver, figures, error } = await Promise.race([answer, failed, hung]);
     if (error) throw new Error(error);
     await writeFile(picture, Buffer.from(data.split(",")[1], "base64"));
     console.error(driver);
+    if (figures) console.log(JSON.stringify(figures));
   } catch (error) {
     console.error(`error: ${error.message}`);
     process.exitCode = 1;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Bakes materials/papers, renders the ball of examples/scene.json with wgpu, with three.js and in plain WebGL 2, and compares the pictures. Of three.js also
-# .glb files with imported materials, against `luthier preview`.
+# the tests of its package, and .glb files with imported materials, against `luthier preview`.
 # With --bevy also with Bevy, whose first build takes a while. Needs a Vulkan driver, npm and Chromium; on Debian
 # apt-get install mesa-vulkan-drivers npm chromium. Pictures are left in target/examples/. The environment variable LUTHIER names
 # the program that bakes; by default cargo builds it.
@@ -27,7 +27,7 @@ scene() { sed "s/\"material\": \"[a-z-]*\"/\"material\": \"$1\"/" examples/scene
 
 step "bake"
 # The models of papers, and a film.
-luthier bake materials/papers materials/soap-film.toml --out "$bake" --quiet
+luthier bake materials/papers materials/soap-film.toml --functions surface --out "$bake" --quiet
 luthier bake materials/papers materials/soap-film.toml --out "$plain" --no-zstd --quiet
 
 # What all four programs show, and materials that read the other tables.
@@ -63,13 +63,19 @@ npm ci --prefix examples/three --ignore-scripts --no-audit --no-fund --silent
 node examples/browser.mjs examples/three "$bake" "$(scene car-paint)" "$out/three.png"
 example difference "$out/wgpu-car-paint.png" "$out/three.png" "$limit"
 
+step "three.js, types of the package"
+npm run --prefix examples/three --silent types
+
+step "three.js, tests of the package"
+node examples/three/test.mjs "$out/package"
+
 step "three.js, .glb files with textures"
 examples/three/compare.sh "$out/gltf"
 
 # Among others the records of the material lie beyond the first row of the material texture, and its rows elsewhere in the tables.
 step "the same material in a library"
 cargo run --locked --quiet -p luthier-material --example library -- 60 "$out/library"
-luthier bake "$out/library" materials/papers --out "$out/many" --target wgsl,glsl-es300 --form baked --no-fit --quiet
+luthier bake "$out/library" materials/papers --out "$out/many" --target wgsl,glsl-es300 --form baked --functions surface --no-fit --quiet
 example luthier-example-wgpu "$out/many" "$(scene car-paint)" "$out/many-wgpu.png"
 node examples/browser.mjs examples/three "$out/many" "$(scene car-paint)" "$out/many-three.png"
 example difference "$out/many-wgpu.png" "$out/many-three.png" "$limit"

@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
-# Shows .glb files in three.js with the materials that `luthier import` and `luthier bake` make of theirs, and compares the pictures with those of
-# `luthier preview`: compare.sh OUT [FILE.glb...]. Without files, those of samples.mjs. Pictures are left in OUT. Three lamps light them and cast shadows;
-# the surroundings are black, because the page has no light from all around.
-# Needs a Vulkan driver, Chromium, and `npm ci` in this folder. The environment variables LUTHIER and DIFFERENCE name the programs that bake and compare;
-# by default cargo builds them.
+# Shows .glb files in three.js, by WebGL 2 and by WebGPU, with the materials that `luthier import` and `luthier bake` make of theirs, and compares the
+# pictures with those of `luthier preview`: compare.sh OUT [FILE.glb...]. Without files, those of samples.mjs. Pictures are left in OUT. Three lamps light
+# them and cast shadows; the surroundings are black.
+# Needs a Vulkan driver, Chromium, and `npm ci` in this folder. The environment variable LUTHIER names the program that bakes; by default cargo builds it.
 set -euo pipefail
 [ $# -gt 0 ] || { echo "usage: compare.sh OUT [FILE.glb...]" >&2; exit 2; }
 mkdir -p "$1"
@@ -21,11 +20,6 @@ irradiance=1.0,0.95,0.9
 lights=(-0.45,0.7,0.6 0.8,0.3,0.6 0.1,-0.4,0.9)
 
 luthier() { if [ -n "${LUTHIER-}" ]; then "$LUTHIER" "$@"; else cargo run --locked --quiet -p luthier-cli --bin luthier -- "$@"; fi; }
-difference() {
-  if [ -n "${DIFFERENCE-}" ]; then "$DIFFERENCE" "$@"; return; fi
-  cargo run --locked --quiet --manifest-path examples/wgpu/Cargo.toml --target-dir target --bin difference -- "$@"
-}
-
 if [ ${#files[@]} -eq 0 ]; then
   node examples/three/samples.mjs "$out"
   files=("$out"/{placed,coated,brushed}.glb)
@@ -43,15 +37,18 @@ for file in "${files[@]}"; do
   name=$(basename "$file" .glb)
   [ "$file" -ef "$out/$name.glb" ] || cp "$file" "$out/$name.glb"
   luthier import "$file" -o "$out/$name" --force >/dev/null
-  luthier bake "$out/$name" --out "$out/$name-bake" --target glsl-es300 --functions surface --no-search --quiet
+  luthier bake "$out/$name" --out "$out/$name-bake" --target wgsl,glsl-es300 --form baked --functions surface --quiet
   # The camera of `preview`, which is 7 away and .3 above the level; the angular radius of its lights.
   cat >"$out/$name.json" <<JSON
 { "file": "$name.glb", "import": "$name/import.json", "size": $size, "eye": [0, 2.0686414, 6.687355], "half_extent": 1.1,
   "light_angular_radius": 0.05, "irradiance": [$irradiance], "lights": [${directions%,}] }
 JSON
   luthier preview "$file" -o "$out/$name-preview.png" --size "$size" --samples 1 "${lamps[@]}" --light-color "$irradiance" \
-    --environment "$out/black.hdr" --background --environment-samples 1
-  node examples/browser.mjs examples/three/gltf.html "$out/$name-bake" "$out/$name.json" "$out/$name-three.png"
-  difference --median "$out/$name-preview.png" "$out/$name-three.png" "${limits[@]}" || failed=1
+    --environment "$out/black.hdr" --background --environment-samples 1 --tone none
+  for renderer in webgl webgpu; do
+    sed "s/{ /{ \"renderer\": \"$renderer\", /" "$out/$name.json" >"$out/$name-$renderer.json"
+    node examples/browser.mjs examples/three/gltf.html "$out/$name-bake" "$out/$name-$renderer.json" "$out/$name-$renderer.png"
+    node examples/three/difference.mjs "$out/$name-preview.png" "$out/$name-$renderer.png" "${limits[@]}" || failed=1
+  done
 done
 exit "$failed"
