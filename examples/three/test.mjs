@@ -54,8 +54,10 @@ async function balls() {
   const plain = path.join(out, "plain");
   const board = path.join(out, "board");
   const packed = path.join(out, "packed");
-  await luthier("bake", "materials/polished-gold.toml", "materials/red-lacquer.toml", "--out", plain, ...BAKED, "surface,environment,albedo");
+  const film = path.join(out, "film");
+  await luthier("bake", "materials/polished-gold.toml", "materials/red-lacquer.toml", "materials/copper-patina.toml", "--out", plain, ...BAKED, "surface,environment,albedo");
   await luthier("bake", "materials/textured", "--no-fit", "--out", board, ...BAKED, "surface");
+  await luthier("bake", "materials/papers/granier-film.toml", "--out", film, ...BAKED, "surface");
   // A limit on the error chooses texels that three.js does not have.
   await luthier("bake", "materials/polished-gold.toml", "--no-fit", "--max-abs", "3e-3", "--out", packed, ...BAKED, "surface");
   check((await readFile(path.join(packed, "manifest.json"), "utf8")).includes('"format": "rgb10a2unorm"'), "a bake has texels of 10 bits");
@@ -71,6 +73,8 @@ async function balls() {
     ["near-lacquer", "red-lacquer", plain, near, [...at, ...DARK]],
     ["lit-lacquer", "red-lacquer", plain, { lights: [], slope_variance: 0, environment: "studio/environment.json" }, ["--sky", "strip-studio"]],
     ["even-lacquer", "red-lacquer", plain, { lights: [{ radiance: [0.5, 0.5, 0.5] }] }, ["--environment", path.join(out, "grey.hdr")]],
+    ["patina", "copper-patina", plain, far, [...from, ...DARK]],
+    ["film", "granier-film", film, far, [...from, ...DARK]],
     ["brass", "worn-brass", board, far, [...from, ...DARK]],
     ["tile", "celadon-tile", board, far, [...from, ...DARK]],
   ];
