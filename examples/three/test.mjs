@@ -53,24 +53,32 @@ async function balls() {
   await writeFile(path.join(out, "grey.hdr"), even(128));
   const plain = path.join(out, "plain");
   const board = path.join(out, "board");
-  await luthier("bake", "materials/polished-gold.toml", "materials/red-lacquer.toml", "--out", plain, ...BAKED, "surface,environment,albedo");
+  const packed = path.join(out, "packed");
+  const film = path.join(out, "film");
+  await luthier("bake", "materials/polished-gold.toml", "materials/red-lacquer.toml", "materials/copper-patina.toml", "--out", plain, ...BAKED, "surface,environment,albedo");
   await luthier("bake", "materials/textured", "--no-fit", "--out", board, ...BAKED, "surface");
+  await luthier("bake", "materials/papers/granier-film.toml", "--out", film, ...BAKED, "surface");
+  // A limit on the error chooses texels that three.js does not have.
+  await luthier("bake", "materials/polished-gold.toml", "--no-fit", "--max-abs", "3e-3", "--out", packed, ...BAKED, "surface");
+  check((await readFile(path.join(packed, "manifest.json"), "utf8")).includes('"format": "rgb10a2unorm"'), "a bake has texels of 10 bits");
   await luthier("environment", "--sky", "strip-studio", "--layout", "cube", "--out", path.join(out, "studio"));
 
   const far = { lights: [{ direction: [0.5, 0.7, 0.6], irradiance: LAMP }] };
   const near = { lights: [{ position: [1, 1.5, 2], irradiance: LAMP }] };
   const [from, at] = [["--light", "0.5,0.7,0.6"], ["--point-light", "1,1.5,2"]];
   const cases = [
-    ["polished-gold", plain, far, [...from, ...DARK]],
-    ["red-lacquer", plain, far, [...from, ...DARK]],
-    ["worn-brass", board, far, [...from, ...DARK]],
-    ["celadon-tile", board, far, [...from, ...DARK]],
-    ["near-lacquer", plain, near, [...at, ...DARK]],
-    ["lit-lacquer", plain, { lights: [], slope_variance: 0, environment: "studio/environment.json" }, ["--sky", "strip-studio"]],
-    ["even-lacquer", plain, { lights: [{ radiance: [0.5, 0.5, 0.5] }] }, ["--environment", path.join(out, "grey.hdr")]],
+    ["gold", "polished-gold", plain, far, [...from, ...DARK]],
+    ["packed-gold", "polished-gold", packed, far, [...from, ...DARK]],
+    ["lacquer", "red-lacquer", plain, far, [...from, ...DARK]],
+    ["near-lacquer", "red-lacquer", plain, near, [...at, ...DARK]],
+    ["lit-lacquer", "red-lacquer", plain, { lights: [], slope_variance: 0, environment: "studio/environment.json" }, ["--sky", "strip-studio"]],
+    ["even-lacquer", "red-lacquer", plain, { lights: [{ radiance: [0.5, 0.5, 0.5] }] }, ["--environment", path.join(out, "grey.hdr")]],
+    ["patina", "copper-patina", plain, far, [...from, ...DARK]],
+    ["film", "granier-film", film, far, [...from, ...DARK]],
+    ["brass", "worn-brass", board, far, [...from, ...DARK]],
+    ["tile", "celadon-tile", board, far, [...from, ...DARK]],
   ];
-  for (const [name, bake, lit, options] of cases) {
-    const material = name.replace(/^(near|lit|even)-/, "red-");
+  for (const [name, material, bake, lit, options] of cases) {
     const expected = path.join(out, `${name}-preview.png`);
     await luthier("preview", material, "--out", bake, "-o", expected, ...PREVIEW, ...options);
     for (const renderer of RENDERERS) {
@@ -88,7 +96,7 @@ async function balls() {
   for (const renderer of RENDERERS) {
     await page("index.html", plain, { ...BALL, ...far, renderer, material: "red-lacquer", tone: "ACESFilmicToneMapping" }, `toned-${renderer}`);
   }
-  const [same, other] = [await difference(...RENDERERS.map(toned)), await difference(toned("webgl"), path.join(out, "red-lacquer-webgl.png"))];
+  const [same, other] = [await difference(...RENDERERS.map(toned)), await difference(toned("webgl"), path.join(out, "lacquer-webgl.png"))];
   check(same.p99 <= 1 && other.median > 5, `a tone curve: ${same.p99} of 255 between the renderers (99 %), ${other.median} against none (median)`);
   return plain;
 }

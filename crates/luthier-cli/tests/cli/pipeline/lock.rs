@@ -29,7 +29,6 @@ fn a_lock_keeps_tables_until_their_budget_breaks() {
     let run = workshop.run(&["bake", "a", "--relock", "--quiet"]).exits(0);
     assert!(run.stderr.contains("wrote a/luthier.lock"), "{}", run.stderr);
     assert_eq!(workshop.tree("out/tables"), without);
-    let lock = workshop.text("a/luthier.lock");
     // From the lock: no candidates were compared, and the bake is the one that wrote it.
     workshop.run(&["bake", "a", "--out", "again", "--quiet"]).exits(0);
     assert_eq!(workshop.tree("again"), workshop.tree("out"));
