@@ -24,7 +24,7 @@ fn what_is_exported_imports() {
         assert_eq!(report, workshop.json(&format!("{format}/export.json")));
         let material = &report["materials"][0];
         assert_eq!(material["numbers"]["metallic"], 1.0);
-        assert!(material["max_albedo_err"].as_f64().unwrap() < 0.1, "{material}");
+        assert!(material["max_albedo_err"].as_f64().unwrap() < 0.2, "{material}");
         assert_eq!(material["views"].as_array().unwrap().len(), 4);
         let imported = format!("again-{format}");
         workshop.run(&["import", &format!("{format}/{file}"), "-o", &imported]).exits(0);
@@ -35,10 +35,10 @@ fn what_is_exported_imports() {
 /// A file with a mistake, a missing one and a folder that has files already leave all as it was.
 #[test]
 fn nothing_is_written_but_all() {
-    let broken = LACQUER.replace("1.5", "0.5");
+    let broken = LACQUER.replace("1.5", "\"nothing\"");
     let workshop = Workshop::with(&[("lacquer.toml", LACQUER), ("broken.toml", &broken), ("file", "")]);
     let export = |words: &[&str]| workshop.run(&[&["export", "--to", "gltf", "--noise", "0.1"], words].concat());
-    export(&["lacquer.toml", "broken.toml", "-o", "out"]).fails(1, &["nothing was written"]).says(&["broken.toml:5"]);
+    export(&["lacquer.toml", "broken.toml", "-o", "out"]).exits(1).says(&["broken.toml:5", "nothing was written"]);
     export(&["none.toml", "-o", "out"]).fails(3, &["none.toml"]);
     export(&["lacquer.toml", "-o", "file"]).fails(3, &["cannot make the folder file: a file is in its place"]);
     workshop.run(&["export", "lacquer.toml", "--to", "usd"]).fails(2, &["usd"]).says(&["openpbr"]);
