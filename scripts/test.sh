@@ -44,6 +44,14 @@ judge() {
   [ ! -e "$json" ] || awk -F '[:,]' '/"max_error":/ { exit !($2 <= 2e-2) }' "$json"
 }
 
+c-programs() {
+  if [ "$(uname -s)" = Linux ]; then
+    ./scripts/c-host.sh --quick
+  else
+    echo "skipped: these programs want EGL without a window"
+  fi
+}
+
 attempt "what the tests need" ./scripts/wants.sh
 attempt "the lean build has neither wgpu nor Vulkan" lean
 attempt "nightly steps" ./scripts/nightly.sh --check
@@ -57,4 +65,5 @@ attempt "pages are up to date" after "build" pages
 # Shaders are held to 2e-2. Of the tables that miss their aim, only the film of soap is off by more (docs/film-table.md).
 attempt "judging the bake of materials" after "build" judge materials 0.11
 attempt "judging the bake of materials/papers" after "build" judge materials/papers 2e-2
+attempt "a host in C reads a bake and draws its ball" after "build" c-programs
 summary
