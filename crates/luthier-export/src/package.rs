@@ -188,7 +188,7 @@ impl Package {
             return Cow::Borrowed(self);
         }
         let mut own = self.clone();
-        names.in_bindings(Names::own, &mut own.manifest.bindings);
+        own.manifest.bindings.iter_mut().for_each(|entry| entry.name = names.own(&entry.name));
         for shader in &mut own.shaders {
             names.in_interface(Names::own, &mut shader.interface);
             if shader.target == Target::Wgsl {

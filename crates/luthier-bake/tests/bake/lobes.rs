@@ -101,7 +101,7 @@ fn a_tight_limit_takes_a_third_lobe() {
         of_form.filter_map(|candidate| candidate.error.lobe).fold(f64::INFINITY, f64::min)
     };
     let [two, three] = [5.0, 7.0].map(least);
-    assert!(three < 0.8 * two, "{three} {two}");
+    assert!(three < 0.9 * two, "{three} {two}");
     let tight = of(Some(0.5 * (two + three)));
     let record = tight.materials[0].constants.lobes.unwrap();
     assert_eq!((record.lobes, LobesForm::of(&record), last_part(&tight)), (3, Some(LobesForm::ThreeLobes), 7.0));

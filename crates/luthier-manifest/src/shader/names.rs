@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::Interface;
-use crate::manifest::BindingEntry;
 
 /// First word of the names of a package, and its place among the bindings of a program: two packages with different ones link into one program.
 ///
@@ -101,11 +100,6 @@ impl Names {
         self.own(wgsl).replace(&group, "@group(0) @binding(")
     }
 
-    /// Bindings with names changed by a function of this type: [`Self::named`] or [`Self::own`].
-    pub fn in_bindings(&self, change: impl Fn(&Self, &str) -> String, entries: &mut [BindingEntry]) {
-        entries.iter_mut().for_each(|entry| entry.name = change(self, &entry.name));
-    }
-
     /// An interface with names changed by [`Self::named`] or [`Self::own`].
     pub fn in_interface(&self, change: impl Fn(&Self, &str) -> String, interface: &mut Interface) {
         for function in &mut interface.functions {
@@ -120,7 +114,7 @@ impl Names {
 /// Beginnings of words that shading languages or emitted texts have.
 const TAKEN: [&str; 12] = ["gl", "vk", "sk", "sv", "texture", "sampler", "spv", "naga", "metal", "webgl", "main", "dx"];
 
-/// What naga puts before the name of a type for the function that makes one.
+/// The beginning of naga's name for the function that makes a value of a type.
 const CONSTRUCT: &str = "Construct";
 
 /// The text with every name that begins with one prefix beginning with another.

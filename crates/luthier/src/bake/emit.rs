@@ -27,7 +27,7 @@ pub(super) fn emit(package: &mut Package, targets: &[Target], forms: &[Form]) ->
     let shaders = wanted.into_par_iter().map(|((form, set, interface), target)| shader(set, *form, interface, target));
     package.shaders = shaders.collect::<Result<_, ShaderError>>()?;
     let mut bindings = luthier_shader::bindings(&set, forms.first().copied().unwrap_or(Form::Baked));
-    names.in_bindings(Names::named, &mut bindings);
+    bindings.iter_mut().for_each(|entry| entry.name = names.named(&entry.name));
     manifest.bindings = bindings;
     Ok(())
 }

@@ -53,6 +53,32 @@ fn maps_ship_as_they_are_and_noise_as_grey() {
     assert!(!workshop.path("out/maps/mapped-patina.png").exists());
 }
 
+/// Pictures are compared by their bytes, whatever their paths. The bake of one of the materials has a file of its own.
+#[test]
+fn materials_with_one_picture_share_its_file() {
+    let workshop = mapped();
+    let text = workshop.text("m/mapped.toml");
+    fs::copy(workshop.path("m/maps/rough.png"), workshop.path("m/maps/copy.png")).unwrap();
+    let renamed = text.replace("mapped", "other").replace("maps/rough.png", "maps/copy.png");
+    workshop.write("m/other.toml", renamed);
+    workshop.run(&["bake", "m", "-q", "--hashed-names"]).exits(0);
+    let of = |manifest: serde_json::Value| {
+        let materials = manifest["materials"].as_array().unwrap().clone();
+        let maps = materials.iter().flat_map(|material| material["maps"].as_array().unwrap().clone());
+        let files = maps.map(|map| (map["source"].clone(), map["file"]["path"].as_str().unwrap().to_owned()));
+        files.collect::<Vec<_>>()
+    };
+    let [rough, noise, copy, same_noise] = of(workshop.json("out/manifest.json")).try_into().unwrap();
+    assert_eq!((rough.1.as_str(), &noise.1), (copy.1.as_str(), &same_noise.1));
+    assert_ne!(rough.0, copy.0);
+    assert_ne!(rough.1, noise.1);
+    assert_eq!(fs::read_dir(workshop.path("out/maps")).unwrap().count(), 2);
+    workshop.run(&["bake", "m", "--check", "--hashed-names"]).exits(0);
+    workshop.run(&REPORT).exits(0);
+    workshop.run(&["bake", "m/other.toml", "-q", "--out", "alone"]).exits(0);
+    assert_eq!(of(workshop.json("alone/manifest.json"))[0].1, "maps/other-roughness-0.png");
+}
+
 #[test]
 fn the_judge_notices_another_map_and_another_index() {
     let workshop = mapped();

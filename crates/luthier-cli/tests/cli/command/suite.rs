@@ -24,7 +24,7 @@ exit 101
 "#;
 
 /// Everything that the script runs, in its order.
-const ALL: [&str; 12] = [
+const ALL: [&str; 13] = [
     "wants.sh",
     "cargo tree",
     "nightly.sh",
@@ -37,6 +37,7 @@ const ALL: [&str; 12] = [
     "luthier",
     "wants.sh",
     "luthier",
+    "c-host.sh",
 ];
 
 fn put(path: &Path, text: &str) {
@@ -51,8 +52,14 @@ fn suite(fails: &str) -> (i32, Vec<String>, Vec<String>) {
     for script in ["test.sh", "steps.sh"] {
         put(&workshop.path("scripts").join(script), &fs::read_to_string(root().join("scripts").join(script)).unwrap());
     }
-    let programs =
-        ["scripts/wants.sh", "scripts/nightly.sh", "scripts/golden.sh", "scripts/pages.sh", "tests/crash/all.sh"];
+    let programs = [
+        "scripts/wants.sh",
+        "scripts/nightly.sh",
+        "scripts/golden.sh",
+        "scripts/pages.sh",
+        "scripts/c-host.sh",
+        "tests/crash/all.sh",
+    ];
     for program in programs.into_iter().chain(["bin/cargo", "target/debug/luthier"]) {
         put(&workshop.path(program), PROGRAM);
     }
@@ -100,6 +107,6 @@ fn steps_without_what_they_need_do_not_run() {
     let (code, ran, summary) = suite("build nightly.sh");
     assert_eq!((code, ran), (1, ALL[..4].iter().map(|name| (*name).to_owned()).collect()));
     assert_eq!(summary[..2], ["failed with 3: nightly steps", "failed with 3: build"]);
-    assert_eq!(summary.len(), 8);
+    assert_eq!(summary.len(), 9);
     assert!(summary[2..].iter().all(|line| line.starts_with("not run: ") && line.ends_with(", because of: build")));
 }

@@ -4,7 +4,7 @@ struct LuthierLobesDraw {
     chances: vec4<f32>,
     //? three_lobes
     {
-        /// That of the third lobe, times the sum of all.
+        /// Probability of the third lobe, times the sum of all.
         third_chance: f32,
         third: LuthierLobeDraw,
     }
