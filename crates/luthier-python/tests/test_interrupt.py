@@ -18,6 +18,8 @@ sys.path.insert(0, sys.argv[1])
 import numpy as np
 import luthier
 from workshop import LACQUER, METAL, hemisphere
+# A shell starts programs in its background without this signal.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 def press_when(is_time):
     '''Presses Ctrl-C from another thread, once it is time.'''

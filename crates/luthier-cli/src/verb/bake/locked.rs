@@ -73,7 +73,11 @@ impl LockFile {
         let next = Lock::of(manifest);
         match &self.lock {
             Some(lock) => {
-                let next = next.after(&self.names);
+                let mut next = next.after(&self.names);
+                // Decisions that stay are written as they are, with what was measured when they were made.
+                if lock.serves_as(&next) {
+                    next.decisions.clone_from(&lock.decisions);
+                }
                 (!lock.decides_as(&next)).then_some(next)
             }
             None => self.is_asked.then_some(next),
