@@ -182,6 +182,18 @@ impl Package {
     }
 
     /// The package with luthier's own names in its WGSL, and in its bindings and the interfaces of shaders: what the runtime calls. Texts of other languages stay.
+    ///
+    /// ```
+    /// use luthier_export::{GENERATOR, Package, Shader};
+    /// use luthier_manifest::{Form, Manifest, Names};
+    ///
+    /// let names = Names { prefix: "car".to_owned(), ..Names::default() };
+    /// let manifest = Manifest { names, ..Manifest::new(GENERATOR, Vec::new(), Vec::new()) };
+    /// let shaders = vec![Shader::wgsl(Form::Baked, "fn car_eval() {}\n".to_owned())];
+    /// let package = Package { manifest, tables: Vec::new(), shaders, maps: Vec::new() };
+    /// assert_eq!(package.in_own_names().wgsl(Form::Baked)?, "fn luthier_eval() {}\n");
+    /// # Ok::<(), luthier_export::PackageError>(())
+    /// ```
     pub fn in_own_names(&self) -> Cow<'_, Self> {
         let names = &self.manifest.names;
         if names.is_default() {

@@ -211,6 +211,8 @@ pub use luthier_manifest::Functions;
 /// let package = Bake { names, ..Bake::wgsl(&[Form::Full]) }.package(&[chalk], &MemoryStore::default())?;
 /// let wgsl = package.wgsl(Form::Full)?;
 /// assert!(wgsl.contains("fn wall_eval(") && wgsl.contains("@group(0) @binding(22)") && wgsl.contains("WALL_MATERIAL_CHALK"));
+/// // The runtime calls functions by luthier's own names.
+/// assert!(package.in_own_names().wgsl(Form::Full)?.contains("fn luthier_eval("));
 /// # Ok::<(), luthier::Error>(())
 /// ```
 #[doc(inline)]

@@ -7,13 +7,23 @@ use super::Interface;
 /// First word of the names of a package, and its place among the bindings of a program: two packages with different ones link into one program.
 ///
 /// ```
-/// use luthier_manifest::Names;
+/// use luthier_manifest::{Interface, Names};
 ///
 /// let names = Names { prefix: "car".to_owned(), first_binding: 16, ..Names::default() };
 /// let text = "var<storage> luthier_materials: array<f32>; // of luthier: LuthierPlace, LUTHIER_MATERIAL_GOLD, my_luthier_x";
 /// let named = names.named(text);
 /// assert_eq!(named, "var<storage> car_materials: array<f32>; // of luthier: CarPlace, CAR_MATERIAL_GOLD, my_luthier_x");
 /// assert_eq!(names.own(&named), text);
+/// assert!(names.check().is_ok() && !names.is_default());
+/// // Another name of the text would be taken for one of the package.
+/// assert_eq!(names.clash("let car_wheel = 1;"), Some("car_wheel"));
+///
+/// let wgsl = "@group(2) @binding(3) var car_sampler: sampler;";
+/// let apart = Names { group: 2, ..names.clone() };
+/// assert_eq!(apart.own_wgsl(wgsl), "@group(0) @binding(3) var luthier_sampler: sampler;");
+/// let mut interface = Interface::read(wgsl);
+/// apart.in_interface(Names::own, &mut interface);
+/// assert!(interface.binds("luthier_sampler"));
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Names {

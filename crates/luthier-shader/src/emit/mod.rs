@@ -116,7 +116,11 @@ fn text(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> Result
             wgsl.clone()
         }
         Target::Glsl450 | Target::GlslEs300 => {
-            glsl::from_wgsl(&wgsl, &bindings(set, form), set.names.group, &calls(set, form), target)?
+            let (group, bindings) = (set.names.group, bindings(set, form));
+            let text = glsl::from_wgsl(&wgsl, &bindings, group, &calls(set, form), target)?;
+            // OpenGL has one list of bindings, and Vulkan sets.
+            let is_apart = group > 0 && target == Target::Glsl450;
+            if is_apart { text.replace("binding = ", &format!("set = {group}, binding = ")) } else { text }
         }
         Target::Hlsl => hlsl::from_wgsl(&wgsl, &bindings(set, form), set.names.group)?,
         Target::Msl => msl::from_wgsl(&wgsl, &bindings(set, form), set.names.group)?,

@@ -46,10 +46,7 @@ pub(crate) fn from_wgsl(
     if body.contains(&format!("_group_{group}_")) {
         return Err(ShaderError::untranslatable(target, "a binding without a name"));
     }
-    let text = layout(&body, &module, wgsl);
-    // OpenGL has one list of bindings, and Vulkan sets.
-    let is_apart = group > 0 && target == Target::Glsl450;
-    Ok(if is_apart { text.replace("binding = ", &format!("set = {group}, binding = ")) } else { text })
+    Ok(layout(&body, &module, wgsl))
 }
 
 /// Names in the WGSL by naga's names of bindings and blocks.

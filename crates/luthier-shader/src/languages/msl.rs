@@ -33,7 +33,10 @@ pub(crate) fn from_wgsl(wgsl: &str, bindings: &[BindingEntry], group: u32) -> Re
     let text = without_end_padding(&text.replace(", metal::access::sample>", ">"));
     let text = rename(text.trim_start_matches(|c| c != '#'), helper);
     let buffers: Vec<(&str, String)> = bindings.iter().filter_map(|entry| type_of(&text, &entry.name)).collect();
-    let body = rename(&text, |word| buffers.iter().find(|(of, _)| *of == word).map(|(_, name)| name.clone()));
+    let body = rename(&text, |word| {
+        let buffer = buffers.iter().find(|(of, _)| *of == word).map(|(_, name)| name.clone());
+        buffer.or_else(|| wrapper(word))
+    });
     if body.to_ascii_lowercase().contains("naga") {
         return Err(refused("a name of naga's is left"));
     }
@@ -50,6 +53,12 @@ fn refused(reason: impl ToString) -> ShaderError {
 fn type_of<'t>(text: &'t str, binding: &str) -> Option<(&'t str, String)> {
     let (before, _) = text.split_once(&format!(" const& {binding}"))?;
     Some((before.rsplit(' ').next()?, camel_case(binding)))
+}
+
+/// The name of a structure around an array, which naga numbers.
+fn wrapper(word: &str) -> Option<String> {
+    let number = word.strip_prefix("type_").filter(|number| number.chars().all(|c| c.is_ascii_digit()))?;
+    Some(format!("LuthierArray{number}"))
 }
 
 /// Argument index of a binding in an entry point.

@@ -25,15 +25,15 @@ const BEVY: &str = include_str!("bevy.wgsl");
 /// The group of a material in Bevy.
 const BEVY_GROUP: &str = "#{MATERIAL_BIND_GROUP}";
 
-/// Folder of `examples/` with jobs for build farms, which render nothing.
-const JOBS: &str = "farm";
+/// Folders of `examples/` without a shader of their own, or with shaders that `scripts/c-host.sh` and `examples/three/test.mjs` compile and run.
+const OTHERS: [&str; 5] = ["farm", "mitsuba", "c", "shaders", "three"];
 
 /// The shaders that call `luthier_eval`, of every folder of `examples/` with a renderer.
 fn shaders() -> Vec<Shader> {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
     let mut shaders = Vec::new();
     let folders = fs::read_dir(&examples).unwrap().map(|entry| entry.unwrap().path());
-    for example in folders.filter(|path| path.is_dir() && !path.ends_with(JOBS)) {
+    for example in folders.filter(|path| path.is_dir() && !OTHERS.iter().any(|other| path.ends_with(other))) {
         let mut found = Vec::new();
         for path in files(&example) {
             let name = path.strip_prefix(&examples).unwrap().display().to_string();

@@ -12,20 +12,22 @@ fn named(prefix: &str, group: u32, first_binding: u32) -> Names {
 }
 
 /// Names that a text declares at its top level: functions, structures, constants, blocks and resources.
-fn declared(text: &str) -> BTreeSet<&str> {
+fn declared(text: &str) -> BTreeSet<String> {
     let is_of_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let mut names = BTreeSet::new();
     for line in text.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_alphabetic() || c == '@')) {
         if line.starts_with("using ") {
             continue;
         }
+        let line = line.replace("metal::", "");
+        let line = line.as_str();
         // The name is the last word before what follows it; attributes and layouts come before it.
         let line =
             line.strip_prefix("@group(").map_or(line, |line| line.split_once(") var").map_or(line, |(_, rest)| rest));
         let line =
             line.strip_prefix("layout(").map_or(line, |line| line.split_once(')').map_or(line, |(_, rest)| rest));
         let end = line.find(['(', ':', ';', '=', '{', '[']).unwrap_or(line.len());
-        names.extend(line[..end].split(|c| !is_of_word(c)).rfind(|word| !word.is_empty()));
+        names.extend(line[..end].split(|c| !is_of_word(c)).rfind(|word| !word.is_empty()).map(str::to_owned));
     }
     names
 }
@@ -50,7 +52,7 @@ fn two_packages_are_one_program() {
             let text = emit(&room, Form::Baked, target).unwrap();
             let known = declared(&text);
             assert!(known.len() > 50, "{name} {target}: {known:?}");
-            let is_own = |word: &&&str| {
+            let is_own = |word: &&String| {
                 let word = word.strip_prefix("Construct").unwrap_or(word);
                 ["the_room_", "TheRoom", "THE_ROOM_"].iter().any(|prefix| word.starts_with(prefix))
             };

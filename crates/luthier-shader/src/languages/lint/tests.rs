@@ -159,8 +159,8 @@ fn arrays_keep_the_names_of_their_types() {
     let wgsl = "fn pick(i: u32) -> u32 {\n    var few = array<u32, 2>(1u, 2u);\n    var many = array<u32, 3>(3u, 4u, 5u);\n    \
         return few[i % 2u] + many[i % 3u];\n}\n";
     let text = crate::library(wgsl, Target::Msl).unwrap();
-    assert_eq!(text.matches("struct type_").count(), 2, "{text}");
-    for (right, wrong) in [("    type_", "    type"), (" = type_", " = type")] {
+    assert_eq!(text.matches("struct LuthierArray").count(), 2, "{text}");
+    for (right, wrong) in [("    LuthierArray", "    Array"), (" = LuthierArray", " = Array")] {
         let other = text.replacen(right, wrong, 1);
         assert!(messages(&other, Target::Msl).iter().any(|found| found.contains("is no type of")), "{other}");
     }

@@ -52,6 +52,7 @@ fn a_third_lobe_comes_after_the_albedo() {
     };
     two.constants.lobes = Some(record);
     let mut three = two.clone();
+    two.name = "two".to_owned();
     three.constants.lobes = Some(LobesRecord { lobes: 3, ..record });
     for materials in [vec![three.clone()], vec![three, two]] {
         let mut set = MaterialSet::new(&materials, tables_with(&layout));
