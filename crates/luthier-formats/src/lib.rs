@@ -7,12 +7,13 @@
 //! use luthier_formats::{Format, Settings, exported};
 //!
 //! let text = "schema = 1\nname = \"gilt\"\n[[layer]]\ntype = \"metallic-roughness\"\nbase_color = [1, 0.77, 0.34]\nmetallic = 1\nroughness = 0.3\n";
-//! let none = |_: &str| Err(std::io::ErrorKind::NotFound.into());
-//! let material = luthier_material::parse("gilt.toml", text, &none).unwrap().material;
-//! let gilt = exported(&material, Format::Gltf, &Settings::quick(), &none);
+//! let no_texts = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+//! let material = luthier_material::parse("gilt.toml", text, &no_texts).unwrap().material;
+//! let no_pictures = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+//! let gilt = exported(&material, Format::Gltf, &Settings::quick(), &no_pictures);
 //! assert_eq!((gilt.numbers.metallic, gilt.numbers.roughness), (1.0, 0.3));
-//! // The formula loses the light between facets.
-//! assert!(gilt.albedo_error() < 0.05, "{}", gilt.albedo_error());
+//! // What the formula lacks at the worst of its angles: light between facets, among others.
+//! assert!(gilt.albedo_error() < 0.12, "{}", gilt.albedo_error());
 //! ```
 //!
 //! Simplifications: a material is a coat, a film and a base, of which each may be absent; coats between the first and the base are one with the first. Numbers hold where maps have texels of 1, and there errors are measured. Films of the
