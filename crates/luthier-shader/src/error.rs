@@ -32,6 +32,9 @@ pub enum ShaderError {
         /// The identifier.
         constant: String,
     },
+    /// Names or places that no program has; see [`luthier_manifest::Names::check`].
+    #[error("{0}")]
+    Names(String),
     /// A word of the shader begins with the prefix of its names.
     #[error("a shader has the word `{word}`, which begins as names with the prefix `{prefix}` do; take another prefix")]
     Prefix {

@@ -5,7 +5,7 @@ use luthier_import::Line;
 use luthier_optics::Rgb;
 use luthier_optics::schlick::index_of_f0;
 
-use super::{Closed, film, held, hue, lengthwise, most, say, say_slopes, widened};
+use super::{Closed, IN_THE_COLOR, film, held, hue, lengthwise, most, say, say_slopes, widened};
 use crate::fit::Free;
 use crate::formula::f0_of;
 use crate::numbers::{Coat, Numbers};
@@ -54,12 +54,7 @@ pub(super) fn closed(surface: &Surface) -> Closed {
             } else {
                 reflectance(&mut numbers, &mut lines, plastic.f0);
                 if plastic.absorbs() {
-                    say(
-                        &mut lines,
-                        "base: absorption",
-                        Approximated,
-                        "it is in the colour of the base, at all angles alike",
-                    );
+                    say(&mut lines, "base: absorption", Approximated, IN_THE_COLOR);
                 }
             }
             numbers.base_color = plastic.diffuse.albedo.map(|r| (r * r).min(1.0));

@@ -36,6 +36,13 @@ pub(crate) fn facets(format: Format, slopes: &Slopes) -> [f64; 3] {
     }
 }
 
+/// A film on a metal that is given by its index, in words, and what becomes of it in formats whose films lie on an F0.
+const FILM_ON_METAL: &str = "film on a metal by its index";
+const FITTED_BELOW_FILM: &str = "films lie on an F0: the colour is fitted";
+
+/// Words for absorption below an interface, where the format has none.
+const IN_THE_COLOR: &str = "it is in the colour of the base, at all angles alike";
+
 /// A property that was taken over.
 fn say(lines: &mut Vec<Line>, property: &str, fate: Fate, note: impl Into<String>) {
     lines.push(Line { property: property.to_owned(), fate, note: note.into() });

@@ -5,7 +5,7 @@ use luthier_import::Line;
 use luthier_optics::Rgb;
 use luthier_optics::schlick::index_of_f0;
 
-use super::{Closed, film, held, hue, lengthwise, say, say_slopes, transmittance};
+use super::{Closed, FILM_ON_METAL, FITTED_BELOW_FILM, film, held, hue, lengthwise, say, say_slopes, transmittance};
 use crate::fit::Free;
 use crate::numbers::{Coat, Numbers};
 use crate::surface::{Base, Slopes, Surface};
@@ -42,12 +42,7 @@ pub(super) fn closed(surface: &Surface) -> Closed {
             say(&mut lines, "base: index", ClosedForm, "its reflectance along the normal and at 82 degrees");
             if surface.film.is_some() {
                 free.push(Free::Color);
-                say(
-                    &mut lines,
-                    "film on a metal by its index",
-                    Approximated,
-                    "films lie on an F0: the colour is fitted",
-                );
+                say(&mut lines, FILM_ON_METAL, Approximated, FITTED_BELOW_FILM);
             }
         }
         Base::Plastic(plastic) => {

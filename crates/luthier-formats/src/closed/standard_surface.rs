@@ -7,7 +7,10 @@ use luthier_optics::Rgb;
 use luthier_optics::fresnel::interface;
 use luthier_optics::schlick::{F82, F82_COS_THETA, index_of_f0};
 
-use super::{Closed, film, held, hue, lengthwise, most, say, say_slopes, transmittance, widened};
+use super::{
+    Closed, FILM_ON_METAL, FITTED_BELOW_FILM, IN_THE_COLOR, film, held, hue, lengthwise, most, say, say_slopes,
+    transmittance, widened,
+};
 use crate::fit::Free;
 use crate::numbers::{Coat, Numbers};
 use crate::surface::{Base, Slopes, Surface};
@@ -43,12 +46,7 @@ pub(super) fn closed(surface: &Surface) -> Closed {
             say(&mut lines, "base: index", ClosedForm, "its reflectance along the normal and at 82 degrees");
             if surface.film.is_some() {
                 free.push(Free::Color);
-                say(
-                    &mut lines,
-                    "film on a metal by its index",
-                    Approximated,
-                    "films lie on an F0: the colour is fitted",
-                );
+                say(&mut lines, FILM_ON_METAL, Approximated, FITTED_BELOW_FILM);
             }
         }
         Base::Plastic(plastic) => {
@@ -60,12 +58,7 @@ pub(super) fn closed(surface: &Surface) -> Closed {
             } else {
                 reflectance(&mut numbers, &mut lines, plastic.f0);
                 if plastic.absorbs() {
-                    say(
-                        &mut lines,
-                        "base: absorption",
-                        Approximated,
-                        "it is in the colour of the base, at all angles alike",
-                    );
+                    say(&mut lines, "base: absorption", Approximated, IN_THE_COLOR);
                 }
                 numbers.base_color = numbers.base_color.map(|r| (r * r).min(1.0));
                 free.push(Free::Color);

@@ -62,7 +62,7 @@ impl Names {
     /// Refuses a prefix that gives no names in all languages, and numbers that no device has.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// The prefix or the number that is refused, and why.
     pub fn check(&self) -> Result<(), String> {
         let Self { prefix, group, first_binding } = self;
         let is_word = |word: &str| {

@@ -131,6 +131,7 @@ fn text(set: &MaterialSet<'_>, form: Form, target: Target, part: Part) -> Result
 
 /// The text with the names of a set.
 fn named(set: &MaterialSet<'_>, text: String) -> Result<String, ShaderError> {
+    set.names.check().map_err(ShaderError::Names)?;
     match set.names.clash(&text) {
         Some(word) => Err(ShaderError::Prefix { prefix: set.names.prefix.clone(), word: word.to_owned() }),
         None => Ok(set.names.named(&text)),

@@ -93,6 +93,10 @@ fn resources_are_where_the_program_has_room() {
 #[test]
 fn a_prefix_that_other_words_have_is_refused() {
     let materials = sets().into_iter().find(|(name, _)| *name == "lobes").unwrap().1;
+    for names in [named("Car", 0, 0), named("", 0, 0), named("car", 99, 0)] {
+        let set = MaterialSet { names, ..MaterialSet::new(&materials, tables()) };
+        assert!(matches!(emit(&set, Form::Baked, Target::Wgsl), Err(ShaderError::Names(_))), "{:?}", set.names);
+    }
     // Parameters of functions begin so.
     let set = MaterialSet { names: named("cos", 0, 0), ..MaterialSet::new(&materials, tables()) };
     let refused = emit(&set, Form::Baked, Target::Wgsl).unwrap_err();
