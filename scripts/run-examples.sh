@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # Bakes materials/papers, renders the ball of examples/scene.json with wgpu, with three.js and in plain WebGL 2, and compares the pictures. Of three.js also
 # the tests of its package, and .glb files with imported materials, against `luthier preview`.
-# With --bevy also with Bevy, whose first build takes a while. Needs a Vulkan driver, npm and Chromium; on Debian
-# apt-get install mesa-vulkan-drivers npm chromium. Pictures are left in target/examples/. The environment variable LUTHIER names
+# Needs a Vulkan driver, npm and Chromium; on Debian apt-get install mesa-vulkan-drivers npm chromium. Pictures are left in target/examples/. The environment variable LUTHIER names
 # the program that bakes; by default cargo builds it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -79,9 +78,3 @@ luthier bake "$out/library" materials/papers --out "$out/many" --target wgsl,gls
 example luthier-example-wgpu "$out/many" "$(scene car-paint)" "$out/many-wgpu.png"
 node examples/browser.mjs examples/three "$out/many" "$(scene car-paint)" "$out/many-three.png"
 example difference "$out/many-wgpu.png" "$out/many-three.png" "$limit"
-
-if [ "${1-}" = --bevy ]; then
-  step "Bevy"
-  cargo run --locked --quiet --manifest-path examples/bevy/Cargo.toml -- "$bake" "$(scene car-paint)" "$out/bevy.png"
-  example difference "$out/wgpu-car-paint.png" "$out/bevy.png" "$limit"
-fi

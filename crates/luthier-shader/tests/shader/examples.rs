@@ -20,13 +20,9 @@ const TEMPLATE: &str = "/* glsl */ `";
 /// Where it pastes the text of the bake.
 const PASTE: &str = "${glsl}";
 
-/// Declarations of Bevy's modules, as far as shaders use them here.
-const BEVY: &str = include_str!("bevy.wgsl");
-/// The group of a material in Bevy.
-const BEVY_GROUP: &str = "#{MATERIAL_BIND_GROUP}";
-
-/// Folders of `examples/` without a shader of their own, or with shaders that `scripts/c-host.sh` and `examples/three/test.mjs` compile and run.
-const OTHERS: [&str; 5] = ["farm", "mitsuba", "c", "shaders", "three"];
+/// Folders of `examples/` without a shader of their own, or with shaders that scripts of their own compile and run in the host.
+const OTHERS: [&str; 10] =
+    ["farm", "mitsuba", "c", "shaders", "three", "bevy", "web", "babylon", "playcanvas", "materialx"];
 
 /// The shaders that call `luthier_eval`, of every folder of `examples/` with a renderer.
 fn shaders() -> Vec<Shader> {
@@ -77,13 +73,7 @@ fn paste(shader: &Shader, bake: &str) -> String {
         let version = if text.starts_with("#version") { "" } else { "#version 300 es\n" };
         return format!("{version}{text}");
     }
-    if !text.contains(BEVY_GROUP) {
-        return format!("{bake}\n{text}");
-    }
-    let (bake, own) = (bake.replace("@group(0)", &format!("@group({BEVY_GROUP})")), text.as_str());
-    let is_import = |line: &&str| line.starts_with("#import ");
-    let own = own.lines().filter(|line| !is_import(line)).collect::<Vec<_>>().join("\n");
-    format!("{BEVY}\n{own}\n{bake}").replace(BEVY_GROUP, "3")
+    format!("{bake}\n{text}")
 }
 
 /// What a shader of an example calls that is in a file beside it.
