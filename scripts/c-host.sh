@@ -122,7 +122,7 @@ compare() {
   luthier preview "$2" --out "$out/$1" -o "$out/$name-preview.png" --shape sphere --size 512 --samples 1 --tone none --light=-0.45,0.7,0.6 \
     --environment "$out/black.hdr" --background --environment-samples 1
   "$out/ball" "$out/$1" "$2" "$out/$name-ball.ppm" >"$out/driver"
-  python3 examples/c/difference.py "$out/$name-preview.png" "$out/$name-ball.ppm" "${@:3}"
+  python3 examples/c/difference.py "$2 in $1 by OpenGL against preview" "$out/$name-preview.png" "$out/$name-ball.ppm" "${@:3}"
 }
 for file in "${materials[@]}"; do compare kinds "$(basename "$file" .toml)" "${limits[@]}"; done
 for layout in "${layouts[@]}"; do compare "$layout" car-paint "${limits[@]}"; done
@@ -151,6 +151,6 @@ for bake in eval "${layouts[@]/#/eval-}"; do
   for language in glsl hlsl; do
     spirv-cross "$out/$bake-$language.spv" --version 450 --no-es >"$out/$bake-$language.glsl"
     "$out/run" "$out/$bake" car-paint "$out/$bake-$language.ppm" "$out/$bake-$language.glsl"
-    python3 examples/c/difference.py "$out/$bake-ball.ppm" "$out/$bake-$language.ppm" "${limits[@]}"
+    python3 examples/c/difference.py "$bake by Vulkan $language against OpenGL" "$out/$bake-ball.ppm" "$out/$bake-$language.ppm" "${limits[@]}"
   done
 done

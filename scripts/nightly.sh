@@ -13,7 +13,7 @@ cd "$(dirname "$0")/.."
 # Everything is computed: no results of earlier runs.
 export LUTHIER_CACHE=
 
-steps=(tests random fuzz release examples c engines formats kind packages installed promises python mitsuba scale crash farm gpu book)
+steps=(tests random fuzz release examples c bevy babylon playcanvas materialx godot engines formats kind packages installed promises python mitsuba scale crash farm gpu book)
 # By its name only, because an emulator takes half an hour.
 named=(architecture)
 # Steps that take less than a minute of a processor: they are kept up to date with every change.
@@ -25,6 +25,11 @@ declare -A says=(
   [release]='release builds write the bytes of debug builds, and name the Cargo feature of a verb that they lack'
   [examples]='the renderers in `examples` show the shipped tables, in a browser too'
   [c]='C programs read bakes and faulty files, their ball in OpenGL is that of `preview`, and fragment shaders around baked texts in Vulkan GLSL and HLSL draw it, too'
+  [bevy]='the crate for Bevy draws the balls of `luthier preview`, shadows and fog, and a bake that is written anew'
+  [babylon]='the package for Babylon.js draws the balls of `luthier preview` in a browser, by WebGL 2 and by WebGPU'
+  [playcanvas]='the package for PlayCanvas draws the balls of `luthier preview` in a browser, by WebGL 2 and by WebGPU'
+  [materialx]='MaterialX generates shaders of a bake as a library of nodes for all its targets, glslang compiles them, and one draws the balls of `luthier preview`'
+  [godot]='the addon for Godot draws the balls of `luthier preview`'
   [engines]='three.js and Babylon.js read the tables of `luthier table`, in furnaces in a browser'
   [formats]='the validator of Khronos and the libraries of MaterialX find no fault in exported materials'
   [kind]='a kind of table is added by the six files of CONTRIBUTING.md, and a reflectance model by a folder and a row; both are baked and judged'
@@ -45,13 +50,20 @@ declare -A says=(
 # without those that only features bring, both without their tests; `tests:WORD` the crates whose sources have the word, with their tests, and
 # those that these use. What is compiled depends on the versions of other crates, too.
 built='Cargo.toml Cargo.lock .cargo'
+# What examples in a browser share, and the three that are compared with each other.
+browsers='examples/wgpu examples/three examples/plain-webgl examples/web examples/scene.json examples/browser.mjs scripts/patience.mjs'
 declare -A reads=(
   [tests]="tests:#\\[ignore materials docs/measurements/stability.json $built"
   [random]="tests:proptest! materials tests/broken tests/broken-surfaces scripts/random-tests.sh $built"
   [fuzz]="crate:luthier-fuzz materials tests/broken tests/broken-surfaces scripts/fuzz.sh $built"
   [release]="crate:luthier-cli materials $built"
-  [examples]="lean:luthier-cli lean:luthier-build crates/luthier-material/examples materials examples scripts/run-examples.sh scripts/patience.mjs $built"
+  [examples]="lean:luthier-cli lean:luthier-build crates/luthier-material/examples materials $browsers scripts/run-examples.sh $built"
   [c]="lean:luthier-cli materials examples/c examples/shaders scripts/c-host.sh $built"
+  [bevy]="lean:luthier-cli crate:luthier-manifest materials examples/bevy scripts/bevy.sh $built"
+  [babylon]="lean:luthier-cli materials examples/babylon examples/web examples/browser.mjs scripts/babylon.sh scripts/patience.mjs $built"
+  [playcanvas]="lean:luthier-cli materials examples/playcanvas examples/web examples/browser.mjs scripts/playcanvas.sh scripts/patience.mjs $built"
+  [materialx]="lean:luthier-cli materials examples/materialx scripts/materialx.sh $built"
+  [godot]="lean:luthier-cli materials examples/godot scripts/godot.sh $built"
   [engines]="crate:luthier-table crate:luthier-texture crates/luthier-cli/src scripts/engines scripts/patience.mjs $built"
   [formats]="crate:luthier-formats crates/luthier-cli/src materials scripts/formats.sh scripts/formats $built"
   [kind]="lean:luthier-cli lean:luthier-gpu scripts/add-kind.sh scripts/add-kind.patch scripts/add-model.sh scripts/add-model.patch scripts/patched.sh $built"
@@ -68,6 +80,11 @@ declare -A reads=(
   [architecture]="lean:luthier-cli materials scripts/other-architecture.sh $built"
 )
 
+# released SCRIPT OPTION...: with the program of a release build.
+released() {
+  cargo build --locked --release -p luthier-cli
+  LUTHIER=$PWD/target/release/luthier "./$1" "${@:2}"
+}
 tests() { CI=true cargo test --locked --workspace --features luthier-cli/view --tests -- --ignored; }
 random() { ./scripts/random-tests.sh 1; }
 fuzz() { ./scripts/fuzz.sh 600; }
@@ -84,39 +101,23 @@ release() {
   diff -r "$work/debug" "$work/release"
   rm -rf "$work"
 }
-examples() {
-  cargo build --locked --release -p luthier-cli
-  LUTHIER=$PWD/target/release/luthier ./scripts/run-examples.sh
-}
-c() {
-  cargo build --locked --release -p luthier-cli
-  LUTHIER=$PWD/target/release/luthier ./scripts/c-host.sh
-}
-engines() {
-  cargo build --locked --release -p luthier-cli
-  LUTHIER=$PWD/target/release/luthier ./scripts/engines/furnace.sh
-}
-formats() {
-  cargo build --locked --release -p luthier-cli
-  LUTHIER=$PWD/target/release/luthier ./scripts/formats.sh
-}
+examples() { released scripts/run-examples.sh; }
+c() { released scripts/c-host.sh; }
+bevy() { released scripts/bevy.sh; }
+babylon() { released scripts/babylon.sh; }
+playcanvas() { released scripts/playcanvas.sh; }
+materialx() { released scripts/materialx.sh; }
+godot() { released scripts/godot.sh; }
+engines() { released scripts/engines/furnace.sh; }
+formats() { released scripts/formats.sh; }
 kind() { ./scripts/add-kind.sh && ./scripts/add-model.sh; }
 book() { ./scripts/book.sh; }
 packages() { ./scripts/package.sh --verify; }
 installed() { ./scripts/installed.sh; }
 promises() { ./scripts/promises.sh; }
-python() {
-  cargo build --locked --release -p luthier-cli
-  LUTHIER=$PWD/target/release/luthier ./scripts/python.sh --install
-}
-mitsuba() {
-  cargo build --locked --release -p luthier-cli
-  LUTHIER=$PWD/target/release/luthier ./scripts/mitsuba.sh
-}
-crash() {
-  cargo build --locked --release -p luthier-cli
-  LUTHIER=$PWD/target/release/luthier ./tests/crash/all.sh
-}
+python() { released scripts/python.sh --install; }
+mitsuba() { released scripts/mitsuba.sh; }
+crash() { released tests/crash/all.sh; }
 scale() { ./scripts/many.sh 100 1000 >/dev/null; }
 farm() {
   cargo build --locked --release -p luthier-cli
@@ -125,10 +126,7 @@ farm() {
 }
 # The profile of the tests, which is built already, and as fast.
 gpu() { ./scripts/gpu.sh try dev; }
-architecture() {
-  cargo build --locked --release -p luthier-cli
-  LUTHIER=$PWD/target/release/luthier ./scripts/other-architecture.sh
-}
+architecture() { released scripts/other-architecture.sh; }
 
 rows=docs/measurements/nightly.tsv
 page=docs/pages/nightly.md

@@ -11,11 +11,16 @@ use luthier_workshop::root;
 use crate::workshop::Workshop;
 
 /// Scripts that the steps call.
-const CALLED: [&str; 21] = [
+const CALLED: [&str; 26] = [
     "random-tests.sh",
     "fuzz.sh",
     "run-examples.sh",
     "c-host.sh",
+    "bevy.sh",
+    "babylon.sh",
+    "playcanvas.sh",
+    "materialx.sh",
+    "godot.sh",
     "engines/furnace.sh",
     "formats.sh",
     "add-kind.sh",
@@ -42,8 +47,10 @@ case $* in view*) echo "--features view"; exit 1 ;; bake*) mkdir -p "$4" && echo
 "#;
 
 /// Every step that runs without its name.
-const ALL: [&str; 19] = [
+const ALL: [&str; 24] = [
     "book",
+    "babylon",
+    "bevy",
     "c",
     "crash",
     "engines",
@@ -51,11 +58,14 @@ const ALL: [&str; 19] = [
     "farm",
     "formats",
     "fuzz",
+    "godot",
     "gpu",
     "installed",
     "kind",
+    "materialx",
     "mitsuba",
     "packages",
+    "playcanvas",
     "promises",
     "python",
     "random",
@@ -196,19 +206,36 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
     let repository = Repository::passed();
     assert_eq!(repository.check().1, set(&[]));
     let all_but_book = &ALL[1..];
-    let cases: [(&str, &[&str]); 21] = [
+    let cases: [(&str, &[&str]); 22] = [
         ("CHANGELOG.md", &[]),
         ("docs/pages/nightly.md", &[]),
         ("docs/proof.md", &["book"]),
         ("docs/measurements/stability.json", &["book", "tests"]),
         (
             "materials/gold.toml",
-            &["c", "examples", "farm", "formats", "fuzz", "gpu", "python", "random", "release", "tests"],
+            &[
+                "babylon",
+                "bevy",
+                "c",
+                "examples",
+                "farm",
+                "formats",
+                "fuzz",
+                "godot",
+                "gpu",
+                "materialx",
+                "playcanvas",
+                "python",
+                "random",
+                "release",
+                "tests",
+            ],
         ),
         ("examples/wgpu/main.rs", &["examples"]),
-        ("examples/farm/job", &["examples", "farm"]),
-        ("examples/c/ball.c", &["c", "examples"]),
-        ("examples/mitsuba/luthier_bsdf.py", &["examples", "mitsuba"]),
+        ("examples/farm/job", &["farm"]),
+        ("examples/c/ball.c", &["c"]),
+        ("examples/web/src/surface.js", &["babylon", "examples", "playcanvas"]),
+        ("examples/mitsuba/luthier_bsdf.py", &["mitsuba"]),
         ("tests/crash/kill.c", &["crash"]),
         ("scripts/engines/furnace.sh", &["engines"]),
         ("Cargo.lock", all_but_book),
@@ -225,6 +252,11 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         (
             "crates/luthier-mesh/src/lib.rs",
             &[
+                "babylon",
+                "bevy",
+                "godot",
+                "materialx",
+                "playcanvas",
                 "c",
                 "crash",
                 "examples",
@@ -247,6 +279,11 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
         (
             "crates/luthier-gallery/src/lib.rs",
             &[
+                "babylon",
+                "bevy",
+                "godot",
+                "materialx",
+                "playcanvas",
                 "c",
                 "crash",
                 "examples",

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Runs the tests of the hosts in examples/ that draw bakes, and prints the page of their pictures beside those of `luthier preview`, docs/pages/hosts.md.
+#   scripts/hosts.sh            all: half an hour on two cores
+#   scripts/hosts.sh HOST...    some; the page has the latest runs of the others, from target/hosts/
+# Wants what the scripts of the hosts name. The variable LUTHIER names the command; by default cargo builds it.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+hosts=(three babylon playcanvas bevy godot materialx c)
+if [ -z "${LUTHIER-}" ]; then
+  cargo build --locked --release -p luthier-cli >&2
+  export LUTHIER=$PWD/target/release/luthier
+fi
+logs=target/hosts
+mkdir -p "$logs"
+three() {
+  npm ci --prefix examples/three --ignore-scripts --no-audit --no-fund --silent
+  LUTHIER_CACHE='' node examples/three/test.mjs target/three
+}
+for host in "${@:-${hosts[@]}}"; do
+  echo "$host" >&2
+  case $host in
+    three) three ;;
+    c) scripts/c-host.sh ;;
+    *) "scripts/$host.sh" ;;
+  esac >"$logs/$host.new"
+  mv "$logs/$host.new" "$logs/$host.log"
+done
+for host in "${hosts[@]}"; do echo "$logs/$host.log"; done | xargs python3 scripts/hosts.py
