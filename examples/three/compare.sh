@@ -48,7 +48,7 @@ JSON
   for renderer in webgl webgpu; do
     sed "s/{ /{ \"renderer\": \"$renderer\", /" "$out/$name.json" >"$out/$name-$renderer.json"
     node examples/browser.mjs examples/three/gltf.html "$out/$name-bake" "$out/$name-$renderer.json" "$out/$name-$renderer.png"
-    node examples/three/difference.mjs "$out/$name-preview.png" "$out/$name-$renderer.png" "${limits[@]}" || failed=1
+    node examples/web/difference.mjs "$out/$name-preview.png" "$out/$name-$renderer.png" "${limits[@]}" || failed=1
   done
 done
 exit "$failed"

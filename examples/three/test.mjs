@@ -10,7 +10,7 @@ import { execFile } from "node:child_process";
 import { mkdir, readFile, stat, writeFile } from "node:fs/promises";
 import path from "node:path";
 import { promisify } from "node:util";
-import { difference, isLit } from "./difference.mjs";
+import { difference, isLit } from "../web/difference.mjs";
 
 const here = import.meta.dirname;
 const root = path.join(here, "../..");

@@ -1,20 +1,7 @@
 import { CompressedCubeTexture, Loader, Material, Texture } from "three";
+import { LuthierManifest, LuthierManifestMaterial } from "luthier-web";
 
-/** What `manifest.json` says; docs/manifest.md has all of it. */
-export interface LuthierManifest {
-  readonly schema: 4;
-  readonly generator: string;
-  readonly materials: readonly LuthierManifestMaterial[];
-  readonly [field: string]: unknown;
-}
-
-export interface LuthierManifestMaterial {
-  readonly name: string;
-  readonly model: string;
-  readonly class: string;
-  readonly maps: readonly { readonly slot: string; readonly layer: number | null; readonly srgb?: boolean; readonly [field: string]: unknown }[];
-  readonly [field: string]: unknown;
-}
+export { LuthierManifest, LuthierManifestMaterial };
 
 /** The two cubes of `luthier environment --layout cube`. */
 export interface LuthierEnvironment {

@@ -1,25 +1,13 @@
 // A bake in memory: textures, the shader, and the materials that are made of them.
 
 import { CompressedCubeTexture, DataTexture, HalfFloatType, LinearFilter, RGBAFormat } from "three";
-import { Surface } from "./surface.js";
+import { Bake, mapKey } from "luthier-web";
 
-export class LuthierBake {
+export class LuthierBake extends Bake {
   #Material;
 
-  constructor({ manifest, text, interface: known, words, tables, maps, Material }) {
-    this.manifest = manifest;
-    /** Names of the materials. The index is the number of a material in the shader. */
-    this.names = manifest.materials.map(({ name }) => name);
-    /** Text of the shader, and what it declares. */
-    this.text = text;
-    this.functions = known.functions.map(({ name }) => name);
-    /** The material buffer, four numbers to a word. */
-    this.words = words;
-    /** Textures of the tables, by the names of the bindings. */
-    this.tables = tables;
-    /** Textures of the maps, by `mapKey`. */
-    this.maps = maps;
-    this.surface = new Surface(manifest, known, text);
+  constructor(read, Material) {
+    super(read);
     /** Uniforms of all materials: the cubes of the environment, and whether there is one. */
     this.environmentUniforms = {
       luthier_environment_map: { value: blackCube() },
@@ -48,13 +36,6 @@ export class LuthierBake {
     for (const texture of [...this.tables.values(), ...this.maps.values()]) texture.dispose();
   }
 
-  /** Number of a material in the shader, and its entry in the manifest. */
-  find(name) {
-    const number = this.names.indexOf(name);
-    if (number < 0) throw new Error(`the bake has no material ${name}; it has ${this.names.join(", ")}`);
-    return { number, entry: this.manifest.materials[number] };
-  }
-
   /**
    * The textures of the maps of a material, as many as any has. Each is a texture of its own, because three.js binds a texture once that a material has
    * twice.
@@ -62,7 +43,7 @@ export class LuthierBake {
   texturesOf(entry) {
     const used = new Set();
     const textures = this.surface.mapsOf(entry).map((map) => {
-      const texture = this.maps.get(LuthierBake.mapKey(map));
+      const texture = this.maps.get(mapKey(map));
       if (!used.has(texture)) return used.add(texture) && texture;
       const again = texture.clone();
       again.needsUpdate = true;
@@ -70,10 +51,6 @@ export class LuthierBake {
     });
     while (textures.length < this.surface.width) textures.push(unused(textures.length));
     return textures;
-  }
-
-  static mapKey({ file, srgb, slot }) {
-    return `${file.path} ${Boolean(srgb)} ${slot === "flake-normal"}`;
   }
 }
 

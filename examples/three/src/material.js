@@ -1,6 +1,7 @@
 // A material of a bake for WebGLRenderer: lights, shadows, fog and tone curve are those of three.js.
 
 import { DataTexture, FloatType, Material, RGBAFormat, ShaderMaterial, UniformsLib, UniformsUtils } from "three";
+import { glslAround } from "luthier-web";
 
 export class LuthierMaterial extends ShaderMaterial {
   #clone;
@@ -18,8 +19,8 @@ export class LuthierMaterial extends ShaderMaterial {
       luthier_material: { value: number },
       luthier_slope_variance: { value: slopeVariance },
       luthier_map_kinds: { value: kinds },
-      luthier_map_rows: { value: rows },
-      luthier_map_factors: { value: factors },
+      luthier_map_rows: { value: rows.flat() },
+      luthier_map_factors: { value: factors.flat() },
       luthier_map_base: { value: base },
     };
     bake.texturesOf(entry).forEach((texture, i) => (this.uniforms[`luthier_map_${i}`] = { value: texture }));
@@ -108,9 +109,18 @@ void main() {
   #include <fog_vertex>
 }`;
 
-function fragment({ text, functions, surface: { width, lines } }) {
+/** How the shader names what `uniformsOf` has. */
+const NAMES = {
+  kind: (i) => `luthier_map_kinds[${i}]`,
+  rows: (i) => `luthier_map_rows[${i}]`,
+  factor: (i) => `luthier_map_factors[${i}]`,
+  base: "luthier_map_base",
+};
+
+function fragment(bake) {
+  const { text, functions, surface: { width } } = bake;
   const has = (name) => functions.includes(name);
-  const each = (line) => Array.from({ length: width }, (_, i) => line(i)).join("\n");
+  const samplers = Array.from({ length: width }, (_, i) => `uniform sampler2D luthier_map_${i};`).join("\n");
   return /* glsl */ `
 varying vec3 vViewPosition;
 varying vec4 luthier_v_tangent;
@@ -128,59 +138,8 @@ uniform float luthier_slope_variance;
 uniform bool luthier_has_environment;
 uniform vec4 luthier_map_base;
 ${width ? `uniform uint luthier_map_kinds[${width}];\nuniform mat3 luthier_map_rows[${width}];\nuniform vec3 luthier_map_factors[${width}];` : ""}
-${each((i) => `uniform sampler2D luthier_map_${i};`)}
-
-LuthierPlace luthier_here;
-vec4 luthier_base;
-mat3 luthier_frame;
-LuthierPrepared luthier_prepared;
-
-vec3 luthier_unit_normal(vec3 t) {
-  vec3 n = 2.0 * t - 1.0;
-  return normalize(vec3(n.xy, max(n.z, 0.001)));
-}
-
-// Slopes add up.
-vec3 luthier_lean(vec3 own, vec3 film) {
-  return normalize(vec3(film.xy * own.z + own.xy * film.z, film.z * own.z));
-}
-
-void luthier_texel(uint material, uint kind, float distance, vec3 t) {
-  ${lines.texel}
-}
-
-// What the maps say of the place.
-void luthier_fill(uint material, vec2 uv, float distance) {
-  luthier_here = luthier_place();
-  luthier_here.slope_variance = luthier_slope_variance;
-  luthier_base = luthier_map_base;
-  ${lines.before}
-  ${each((i) => `luthier_texel(material, luthier_map_kinds[${i}], distance, luthier_map_factors[${i}] * texture(luthier_map_${i}, (luthier_map_rows[${i}] * vec3(uv, 1.0)).xy).rgb);`)}
-  ${lines.after}
-}
-
-// Tangent, bitangent and normal; bitangents are against v. Without a tangent of the geometry it follows u.
-mat3 luthier_make_frame(vec3 normal, vec4 given, vec3 position, vec2 uv) {
-  vec3 p0 = dFdx(position), p1 = dFdy(position);
-  vec2 t0 = dFdx(uv), t1 = dFdy(uv);
-  vec3 e0 = cross(p1, normal), e1 = cross(normal, p0);
-  float side = dot(p0, e0) < 0.0 ? -1.0 : 1.0;
-  vec3 along = side * (e0 * t0.x + e1 * t1.x);
-  float w = side * dot(cross(normal, along), e0 * t0.y + e1 * t1.y) > 0.0 ? -1.0 : 1.0;
-  if (given.w != 0.0) {
-    along = given.xyz;
-    w = sign(given.w);
-  }
-  along -= normal * dot(normal, along);
-  vec3 across = cross(normal, abs(normal.x) > 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0));
-  vec3 tangent = normalize(dot(along, along) > 1e-30 ? along : across);
-  return mat3(tangent, cross(normal, tangent) * w, normal);
-}
-
-vec3 luthier_lit(vec3 color, vec3 direction) {
-  if (color == vec3(0.0)) return vec3(0.0);
-  return ${has("luthier_light_lit") ? "luthier_light_lit(luthier_prepared, direction * luthier_frame, color)" : "color * luthier_light(luthier_prepared, direction * luthier_frame)"};
-}
+${samplers}
+${glslAround(bake, NAMES)}
 
 // The loop over the lights is that of three.js.
 #define RE_Direct(light, position, normal, view, coat_normal, material, reflected) reflected += luthier_lit(light.color, light.direction)
@@ -197,11 +156,11 @@ void main() {
   // No normal is seen from behind.
   normal = normalize(normal + max(0.02 - dot(normal, luthier_wo), 0.0) * luthier_wo);
   luthier_frame = luthier_make_frame(normal, luthier_v_tangent, -vViewPosition, luthier_v_uv);
-  luthier_fill(luthier_material, luthier_v_uv, length(vViewPosition));
+  luthier_fill(luthier_material, luthier_v_uv, length(vViewPosition), luthier_slope_variance);
   luthier_prepared = luthier_prepare_at(luthier_here, luthier_material, luthier_wo * luthier_frame);
   vec3 reflectedLight = vec3(0.0);
   #include <lights_fragment_begin>
-  ${has("luthier_albedo") ? "reflectedLight += irradiance * RECIPROCAL_PI * luthier_albedo(luthier_prepared);" : ""}
+  ${has("luthier_albedo") ? "reflectedLight += luthier_ambient(irradiance);" : ""}
   ${has("luthier_environment") ? "if (luthier_has_environment) reflectedLight += luthier_environment(luthier_prepared, transpose(mat3(viewMatrix)) * luthier_frame, 0.0);" : ""}
   gl_FragColor = vec4(luthier_bounded(reflectedLight), 1.0);
   #include <tonemapping_fragment>

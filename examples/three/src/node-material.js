@@ -6,6 +6,7 @@ import {
   cameraViewMatrix, determinant, materialReference, modelViewMatrix, modelWorldMatrix, normalView, positionView, positionViewDirection, reference, sign, storage,
   tangentGeometry, tangentLocal, texture, uniform, uv, varying, vec2, vec3, vec4, wgslFn,
 } from "three/tsl";
+import { fill, wgslAround, withOwnSamplers } from "luthier-web";
 
 export class LuthierNodeMaterial extends NodeMaterial {
   static get type() {
@@ -22,7 +23,16 @@ export class LuthierNodeMaterial extends NodeMaterial {
     /** Variance of the slopes of the normals that a pixel sees, along either axis: it widens highlights, as the size of a lamp does. */
     this.slopeVariance = slopeVariance;
     /** What the nodes of the bake read of this material. */
-    this.luthier = { bake, number, textures: bake.texturesOf(entry), ...bake.surface.uniformsOf(entry) };
+    const { kinds, rows, factors, base } = bake.surface.uniformsOf(entry);
+    this.luthier = {
+      bake,
+      number,
+      textures: bake.texturesOf(entry),
+      kinds,
+      rows: rows.map((columns) => new Matrix3().fromArray(columns)),
+      factors: factors.map((factor) => new Vector3(...factor)),
+      base: new Vector4(...base),
+    };
     this.setValues(parameters);
   }
 
@@ -140,6 +150,13 @@ function makeNodes(bake) {
       [`factor_${i}`]: own(new Vector3(1, 1, 1), "vec3", ({ luthier }) => luthier.factors[i]),
     }))),
   };
+  const names = {
+    kind: (i) => `kind_${i}`,
+    rows: (i) => `rows_${i}`,
+    factor: (i) => `factor_${i}`,
+    base: "base",
+    sample: (i, at) => `textureSample(luthier_map_${i}, luthier_map_${i}_sampler, ${at})`,
+  };
   const fn = (text) => wgslFn(text, [code]);
   const prepare = fn(`fn luthier_start(material: u32, variance: f32, base: vec4<f32>,
     ${places.map((i) => `kind_${i}: u32, rows_${i}: mat3x3<f32>, factor_${i}: vec3<f32>, `).join("")}
@@ -148,21 +165,13 @@ function makeNodes(bake) {
   let normal = normalize(given_normal + max(0.02 - dot(given_normal, wo), 0.0) * wo);
   let distance = length(position);
   luthier_frame = luthier_make_frame(normal, tangent, position, uv);
-  luthier_here = luthier_place();
-  luthier_here.slope_variance = variance;
-  luthier_base = base;
-  ${bake.surface.lines.before}
-  ${places.map((i) => `luthier_texel(material, kind_${i}, distance, factor_${i} * textureSample(luthier_map_${i}, luthier_map_${i}_sampler, (rows_${i} * vec3(uv, 1.0)).xy).rgb);`).join("\n  ")}
-  ${bake.surface.lines.after}
+  ${fill(bake.surface, names)}
   luthier_prepared = luthier_prepare_at(luthier_here, material, wo * luthier_frame);
   return 0.0;
 }`);
-  const light = fn(`fn luthier_lit(direction: vec3<f32>, color: vec3<f32>) -> vec3<f32> {
-  if (all(color == vec3<f32>(0.0))) { return vec3<f32>(0.0); }
-  return ${has("luthier_light_lit") ? "luthier_light_lit(luthier_prepared, direction * luthier_frame, color)" : "color * luthier_light(luthier_prepared, direction * luthier_frame)"};
-}`);
+  const light = fn("fn luthier_direct(color: vec3<f32>, direction: vec3<f32>) -> vec3<f32> { return luthier_lit(color, direction); }");
   const bounded = fn("fn luthier_sum(radiance: vec3<f32>) -> vec3<f32> { return luthier_bounded(radiance); }");
-  const ambient = has("luthier_albedo") && fn(`fn luthier_ambient(irradiance: vec3<f32>) -> vec3<f32> { return irradiance / LUTHIER_PI * luthier_albedo(luthier_prepared); }`);
+  const ambient = has("luthier_albedo") && fn("fn luthier_indirect(irradiance: vec3<f32>) -> vec3<f32> { return luthier_ambient(irradiance); }");
   const around = cubes.length && fn(`fn luthier_around(view: mat4x4<f32>, is_there: u32) -> vec3<f32> {
   if (is_there == 0u) { return vec3<f32>(0.0); }
   let world = transpose(mat3x3<f32>(view[0].xyz, view[1].xyz, view[2].xyz));
@@ -193,50 +202,6 @@ function viewTangent() {
 }
 
 /** The text of the bake without its bindings, which three.js writes, and what stands between it and three.js. */
-function wgsl({ text, surface: { lines } }) {
-  const own = text
-    .replace(/^@group\(0\) @binding\(\d+\) var.*$/gm, "")
-    .replace(/\b(luthier_\w+), luthier_(?:environment_)?sampler\b/g, "$1, $1_sampler")
-    .replace(/\bluthier_materials\[/g, "luthier_materials.value[");
-  return `${own}
-var<private> luthier_here: LuthierPlace;
-var<private> luthier_base: vec4<f32>;
-var<private> luthier_frame: mat3x3<f32>;
-var<private> luthier_prepared: LuthierPrepared;
-
-fn luthier_unit_normal(t: vec3<f32>) -> vec3<f32> {
-  let n = 2.0 * t - 1.0;
-  return normalize(vec3(n.xy, max(n.z, 0.001)));
-}
-
-// Slopes add up.
-fn luthier_lean(own: vec3<f32>, film: vec3<f32>) -> vec3<f32> {
-  return normalize(vec3(film.xy * own.z + own.xy * film.z, film.z * own.z));
-}
-
-fn luthier_texel(material: u32, kind: u32, distance: f32, t: vec3<f32>) {
-  ${lines.texel}
-}
-
-// Tangent, bitangent and normal; bitangents are against v. Without a tangent of the geometry it follows u.
-fn luthier_make_frame(normal: vec3<f32>, given: vec4<f32>, position: vec3<f32>, uv: vec2<f32>) -> mat3x3<f32> {
-  let p0 = dpdx(position);
-  let p1 = dpdy(position);
-  let t0 = dpdx(uv);
-  let t1 = dpdy(uv);
-  let e0 = cross(p1, normal);
-  let e1 = cross(normal, p0);
-  let side = select(1.0, -1.0, dot(p0, e0) < 0.0);
-  var along = side * (e0 * t0.x + e1 * t1.x);
-  var w = select(1.0, -1.0, side * dot(cross(normal, along), e0 * t0.y + e1 * t1.y) > 0.0);
-  if (given.w != 0.0) {
-    along = given.xyz;
-    w = sign(given.w);
-  }
-  along -= normal * dot(normal, along);
-  let across = cross(normal, select(vec3<f32>(1.0, 0.0, 0.0), vec3<f32>(0.0, 0.0, 1.0), abs(normal.x) > 0.9));
-  let tangent = normalize(select(across, along, dot(along, along) > 1e-30));
-  return mat3x3<f32>(tangent, cross(normal, tangent) * w, normal);
-}
-`;
+function wgsl(bake) {
+  return withOwnSamplers(bake.text, (texture) => `${texture}_sampler`).replace(/\bluthier_materials\[/g, "luthier_materials.value[") + wgslAround(bake);
 }

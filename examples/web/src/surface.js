@@ -1,8 +1,6 @@
 // The maps of materials, and the lines of shader that fill a `LuthierPlace` from their texels. The lines are the same in GLSL and in WGSL, and the same
 // for all materials of a bake: a texel goes to the quantity whose number, its kind, is a uniform. So a bake has one program.
 
-import { Matrix3, Vector3, Vector4 } from "three";
-
 /**
  * What the texel `t` of a map says of the place: the table in docs/manifest.md. `layer` is that of the map; `fills` tells whether the place, or that of a
  * layer, has a member. Undefined where no model of the bake shows the quantity.
@@ -45,7 +43,7 @@ export class Surface {
     this.kinds = new Map();
     for (const { name, maps } of manifest.materials) {
       for (const { slot, layer } of maps) {
-        if (!(slot in SLOTS)) throw new Error(`${name} has a map of ${slot}, which this version of luthier-three does not know`);
+        if (!(slot in SLOTS)) throw new Error(`${name} has a map of ${slot}, which this version of luthier-web does not know`);
         const line = SLOTS[slot](layer ?? 0, fills);
         if (line) this.kinds.set(`${slot} ${layer}`, line);
       }
@@ -74,7 +72,10 @@ export class Surface {
     return [...shown.filter(({ slot }) => slot !== "f0"), ...shown.filter(({ slot }) => slot === "f0")];
   }
 
-  /** Uniforms of the maps of a material, one element for each texture that it may have: kind, rows of the texture coordinates, factor. And its base. */
+  /**
+   * Numbers of the maps of a material, one element for each texture that it may have: `kinds`; `rows`, the matrix of the texture coordinates, column by column;
+   * `factors`, three each. And its `base`, four numbers.
+   */
   uniformsOf(entry) {
     const maps = this.mapsOf(entry);
     const kinds = [...this.kinds.keys()];
@@ -82,24 +83,37 @@ export class Surface {
     return {
       kinds: all.map((map) => (map ? kinds.indexOf(`${map.slot} ${map.layer}`) + 1 : 0)),
       rows: all.map((map) => rowsOf(entry, map)),
-      factors: all.map((map) => new Vector3(...(map?.factor ?? [1, 1, 1]))),
-      base: maps.some(({ slot }) => slot === "base-color" || slot === "metallic") ? uncoloured(entry) : new Vector4(0, 0, 0, -1),
+      factors: all.map((map) => map?.factor ?? [1, 1, 1]),
+      base: maps.some(({ slot }) => slot === "base-color" || slot === "metallic") ? uncoloured(entry) : [0, 0, 0, -1],
     };
   }
+}
+
+/**
+ * Statements, in GLSL and in WGSL, that fill `luthier_here` from the maps at `uv`. The host says how it writes the numbers of map `i`, `kind`, `rows` and
+ * `factor`, the `base`, and its texel at texture coordinates, `sample(i, at)`. They read `material`, `uv`, `distance` and `variance`.
+ */
+export function fill({ width, lines }, { kind, rows, factor, base, sample }) {
+  const texels = Array.from({ length: width }, (_, i) => {
+    const texel = sample(i, `(${rows(i)} * vec3(uv, 1.0)).xy`);
+    return `luthier_texel(material, ${kind(i)}, distance, ${factor(i)} * ${texel}.rgb);`;
+  });
+  const place = ["luthier_here = luthier_place();", "luthier_here.slope_variance = variance;", `luthier_base = ${base};`];
+  return [...place, lines.before, ...texels, lines.after].filter(Boolean).join("\n  ");
 }
 
 /** The matrix that makes texture coordinates of (u, v, 1). */
 function rowsOf({ constants }, map) {
   const [[a, b, c], [d, e, f]] = map?.transform ?? [[1, 0, 0], [0, 1, 0]];
   const tiling = map?.slot === "flake-normal" ? constants.flakes.tiling : 1;
-  return new Matrix3(a * tiling, b * tiling, c, d * tiling, e * tiling, f, 0, 0, 1);
+  return [a * tiling, d * tiling, 0, b * tiling, e * tiling, 0, c, f, 1];
 }
 
 /** Colour and metal of a surface with a map of the other alone. */
 function uncoloured({ constants, layers }) {
   const metallic = layers.some((layer) => layer.is_metal) ? 1 : 0;
-  if (constants.brightening) return new Vector4(...constants.brightening.base_color, metallic);
+  if (constants.brightening) return [...constants.brightening.base_color, metallic];
   // Without metal, what the interface lets through decides the albedo of the base.
   const passed = (0.96 * 20) / 21 / layers.at(-2).eta ** 2;
-  return new Vector4(...layers.at(-1).albedo.map((albedo) => (albedo * passed) / (1 - albedo * (1 - passed))), metallic);
+  return [...layers.at(-1).albedo.map((albedo) => (albedo * passed) / (1 - albedo * (1 - passed))), metallic];
 }

@@ -1,12 +1,11 @@
-// KTX2 files of `luthier bake` and `luthier environment` as textures of three.js: raw texels, plain or compressed with zstd.
+// KTX2 files of `luthier bake` and `luthier environment` as textures of three.js.
 
 import {
-  CompressedCubeTexture, DataTexture, DataUtils, FloatType, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, NearestFilter, NearestMipmapNearestFilter, RedFormat, RGBAFormat,
+  CompressedCubeTexture, DataTexture, FloatType, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, NearestFilter, NearestMipmapNearestFilter, RedFormat, RGBAFormat,
   RGBFormat, RGFormat, UnsignedByteType, UnsignedInt101111Type,
 } from "three";
 import { ZSTDDecoder } from "three/addons/libs/zstddec.module.js";
-
-const ZSTD = 2;
+import { readKtx2, toHalfFloats } from "luthier-web";
 
 /** Formats of the manifest in the words of three.js: format, type, and the array that holds texels. */
 const FORMATS = {
@@ -21,10 +20,10 @@ const FORMATS = {
 
 /** The texture of a table, which ends at its edges. */
 export async function tableTexture(file, format) {
-  const { width, height, levels } = await read(file);
-  let [texels, known] = [levels[0].texels, format];
-  // three.js has no such texels; a half float is off by a quarter of their step at most.
-  if (format === "rgb10a2unorm") [texels, known] = [halves(new Uint32Array(texels)).buffer, "rgba16float"];
+  const { width, height, levels } = await readKtx2(file, unzstd);
+  let [texels, known] = [levels[0], format];
+  // three.js has no such texels.
+  if (format === "rgb10a2unorm") [texels, known] = [toHalfFloats(texels).buffer, "rgba16float"];
   if (!(known in FORMATS)) throw new Error(`three.js has no texels of ${format}: bake with --no-search, or ask for another format in the material file`);
   const [layout, type, Texels] = FORMATS[known];
   const texture = new DataTexture(new Texels(texels), width, height, layout, type);
@@ -44,11 +43,11 @@ export function unfiltered(texture) {
 
 /** The texture of a cube of half floats with all its levels. */
 export async function cubeTexture(file) {
-  const { width, height, levels } = await read(file);
+  const { width, height, levels } = await readKtx2(file, unzstd);
   const faces = Array.from({ length: 6 }, (_, face) => ({
     width,
     height,
-    mipmaps: levels.map(({ texels }, level) => {
+    mipmaps: levels.map((texels, level) => {
       const data = new Uint16Array(texels);
       const length = data.length / 6;
       return { data: data.subarray(face * length, (face + 1) * length), width: width >> level, height: height >> level };
@@ -62,35 +61,10 @@ export async function cubeTexture(file) {
   return texture;
 }
 
-/** Size and texels of a file. */
-async function read(file) {
-  const view = new DataView(file);
-  if (file.byteLength < 104 || view.getUint32(0, false) !== 0xab4b5458) throw new Error("this is no KTX2 file");
-  const long = (at) => Number(view.getBigUint64(at, true));
-  const isCompressed = view.getUint32(44, true) === ZSTD;
-  const levels = [];
-  for (let level = 0; level < Math.max(view.getUint32(40, true), 1); level++) {
-    const [offset, length, whole] = [0, 8, 16].map((at) => long(80 + 24 * level + at));
-    const texels = file.slice(offset, offset + length);
-    levels.push({ texels: isCompressed ? await unpack(texels, whole) : texels });
-  }
-  return { width: view.getUint32(20, true), height: view.getUint32(24, true), levels };
-}
-
 let decoder;
 
-async function unpack(texels, length) {
+async function unzstd(bytes, length) {
   decoder ??= new ZSTDDecoder();
   await decoder.init();
-  return decoder.decode(new Uint8Array(texels), length).slice().buffer;
-}
-
-/** Texels of 10, 10, 10 and 2 bits as half floats. */
-function halves(words) {
-  const texels = new Uint16Array(4 * words.length);
-  words.forEach((word, i) => {
-    for (let channel = 0; channel < 3; channel++) texels[4 * i + channel] = DataUtils.toHalfFloat(((word >>> (10 * channel)) & 1023) / 1023);
-    texels[4 * i + 3] = DataUtils.toHalfFloat((word >>> 30) / 3);
-  });
-  return texels;
+  return decoder.decode(bytes, length);
 }
