@@ -12,7 +12,7 @@ LINE = re.compile(
     r"(?P<holds>holds|FAILS): (?P<picture>.+?) by (?P<by>.+?) against preview: median (?P<median>[\d.]+) of 255(, 95 % within (?P<p95>[\d.]+))?"
     r", 99 % within (?P<p99>[\d.]+), largest (?P<most>[\d.]+), (?P<pixels>\d+) pixels"
 )
-NAMES = {"three": "three.js", "babylon": "Babylon.js", "playcanvas": "PlayCanvas", "bevy": "Bevy", "godot": "Godot", "materialx": "MaterialX", "c": "C"}
+NAMES = {"three": "three.js", "babylon": "Babylon.js", "playcanvas": "PlayCanvas", "bevy": "Bevy", "godot": "Godot", "materialx": "MaterialX", "c": "C", "web": "two bakes in one program"}
 
 print("""# Hosts
 

@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-hosts=(three babylon playcanvas bevy godot materialx c)
+hosts=(three babylon playcanvas bevy godot materialx c web)
 if [ -z "${LUTHIER-}" ]; then
   cargo build --locked --release -p luthier-cli >&2
   export LUTHIER=$PWD/target/release/luthier
@@ -22,6 +22,7 @@ for host in "${@:-${hosts[@]}}"; do
   case $host in
     three) three ;;
     c) scripts/c-host.sh ;;
+    web) LUTHIER_CACHE='' node examples/web/test.mjs target/web ;;
     *) "scripts/$host.sh" ;;
   esac >"$logs/$host.new"
   mv "$logs/$host.new" "$logs/$host.log"

@@ -78,3 +78,6 @@ luthier bake "$out/library" materials/papers --out "$out/many" --target wgsl,gls
 example luthier-example-wgpu "$out/many" "$(scene car-paint)" "$out/many-wgpu.png"
 node examples/browser.mjs examples/three "$out/many" "$(scene car-paint)" "$out/many-three.png"
 example difference "$out/many-wgpu.png" "$out/many-three.png" "$limit"
+
+step "two bakes in one program of WebGPU"
+node examples/web/test.mjs "$out/web"
