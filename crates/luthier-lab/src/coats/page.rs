@@ -16,19 +16,20 @@ const SOURCES: &str = "
 |---|---|---|---|
 | glTF | glTF 2.0, appendix B; `KHR_materials_clearcoat` | coat mixed over the base by Schlick's reflectance at the eye's cosine; masking as B.3.2 prints it, a product | nothing; viewers take the correlated masking |
 | Filament | `surface_shading_model_standard.fs`, `surface_brdf.fs` | Kelemen's masking, F0 below index 1.5, the base at least as rough as the coat, factor of energy | integrals of albedos in place of a table |
-| Disney | `disney.brdf` of wdas/brdf | a quarter of GTR1 added, nothing taken from the base | `clearcoatGloss` beyond its range for slope parameters above .1 |
-| Standard Surface | `standard_surface.mtlx`, MaterialX 1.39 | the graph, the GLSL nodes with their fit of albedos, `artistic_ior` with a white edge | exact conductors |
-| albedo scaling | Cycles, Kulla and Conty 2017 | the base times 1 less the albedo of the coat | typed from memory, the source was not at hand; integrals in place of tables |
+| Disney | `disney.brdf` of wdas/brdf | a quarter of GTR1 added by design, nothing taken from the base | `clearcoatGloss` beyond its range for slope parameters above .1 |
+| Standard Surface | `standard_surface.mtlx`, MaterialX 1.39 | the graph, the GLSL nodes with their fit of albedos, `artistic_ior` with a white edge; `coat_affect_color` and `coat_affect_roughness`, which would darken and roughen the base, at their default of 0 | exact conductors |
+| albedo scaling | Cycles' Principled BSDF: `svm/closure.h`, `closure/bsdf_util.h` and `bsdf_microfacet.h` of Blender; Kulla and Conty 2017 | the base times 1 less the albedo of the coat; energy preserved in all lobes | integrals in place of tables |
 | OpenPBR | `open_pbr_surface.mtlx`, MaterialX 1.39 | the graph with its roughening and darkening, the GLSL nodes | `coat_ior` 1.5 in place of 1.6 |
 | Adobe | adobe/openpbr-bsdf, a29da969 | both passages through the coat, its own roughening and darkening, light between facets of metals | integrals in place of tables, masking as a product |
 ";
 
 const INTRODUCTION: &str = "\
-Engines draw a clear coat by formulas. This page types six of them from their sources and one from memory, which it says (`crates/luthier-lab/src/coats`, one file for each, which says what is to the letter, what the source leaves open, and where a choice had to be
+Engines draw a clear coat by formulas. This page transcribes seven of them from their sources (`crates/luthier-lab/src/coats`, one file for each, which says what is to the letter, what the source leaves open, and where a choice had to be
 taken), and compares them with the simulation, as [lobes.md](lobes.md) compares fits: with the errors of that page, at six angles of the eye, 0, 30, 45, 60, 70 and 80 degrees, and three channels.
 
 The coat is clear, of index 1.5, with slope parameter .05, .2 or .4. Bases have slope parameter .1 or .3: grey metal of F0 .7 and copper of (.95, .6, .4); plastics of colour .8 and (.4, .25, .12), with F0 .04; copper with `metallic` .5. Bases reflect by
-that F0 also below the coat, and their colour is what they show without one: the last two tables have the errors of formulas there, which are no fault of the coat. A mixture is one interface with an F0 half way, as luthier reads a number `metallic = 0.5`: glTF, Standard Surface and OpenPBR blend two surfaces, so that this group measures that difference, too. Random places are six of
+that F0 also below the coat, and their colour is what they show without one: the last two tables have the errors of formulas there, which are no fault of the coat. Filament, OpenPBR and Adobe's code make F0 relative to the coat on purpose, so that a base of index 1.5 reflects nothing there: a part of
+their error is this difference of meaning. So is the roughness: every formula gets that of the base below the coat, and an author who looks through a coat may mean what is seen. Both are dials; [formats.md](formats.md) has what remains when they are fitted. A mixture is one interface with an F0 half way, as luthier reads a number `metallic = 0.5`: glTF, Standard Surface and OpenPBR blend two surfaces, so that this group measures that difference, too. Random places are six of
 other colours and slope parameters, metals and plastics by turns, as texels have them; `lobes` is fitted to each.
 
 The simulation refracts at every facet, so that a smooth coat makes the lobe of a metal wider by its index, and light that meets the coat from below beyond 41.8 degrees goes back. Formulas that have neither are too sharp and too bright.
@@ -126,7 +127,7 @@ fn remedies(out: &mut String, results: &[Result]) -> std::fmt::Result {
     out.push_str(
         "\n## What each could change\n\nOne change, the same for all, which takes no table: below a coat of index n and slope parameter a_c the base has the slope parameter `sqrt(n^2 a^2 + (n - 1)^2 a_c^2 / 2)`, at most 1, \
          and the factor `(1 - K) / (1 - K c)`, c its colour. K is what the coat sends back: its average reflectance F from outside for mirrors, `1 - (1 - F) / n^2` for diffuse bases, and between them by the slope parameter for metals and by `metallic`. \
-         It stands in place of the width and the factor that a formula has; all else stays. Formulas without a factor gain by it; OpenPBR in MaterialX has both already, and its lines say whether these are better. The width is derived for small slopes; the factor is OpenPBR 1.1's, with another measure of roughness.\n\n",
+         It stands in place of the width and the factor that a formula has; all else stays. Formulas without a factor gain by it; OpenPBR in MaterialX has both already, and its lines say whether these are better. The width is derived for small slopes; the factor is OpenPBR 1.1's, with another measure of roughness. Unity's HDRP, whose coat is not on this page, widens the base by n in the same way (`FillMaterialClearCoatData` of its Lit shader); those of Unreal and Godot are not here, either.\n\n",
     );
     for (number, engine) in ENGINES.iter().enumerate() {
         let part = |groups: &[Group]| {

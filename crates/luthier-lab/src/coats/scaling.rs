@@ -1,7 +1,7 @@
 //! Albedo scaling: the base times 1 less the directional albedo of the coat, as Cycles' Principled BSDF and Arnold's `standard_surface` layer.
 //!
-//! Source: Blender, `intern/cycles/kernel/svm/closure.h` (Principled BSDF: `weight *= 1 - reduce_max(albedo)`) and `kernel/closure/bsdf_microfacet.h`
-//! (`microfacet_ggx_preserve_energy`); Kulla and Conty 2017, section "Layering". Written from memory of the sources, which were not at hand.
+//! Source: Blender, `intern/cycles/kernel/svm/closure.h` (Principled BSDF), `kernel/closure/bsdf_util.h` (`closure_layering_weight`: `1 - reduce_max(albedo)`) and
+//! `kernel/closure/bsdf_microfacet.h` (`microfacet_ggx_preserve_energy`); Kulla and Conty 2017, section "Layering".
 //!
 //! The directional albedo is that at the eye, which is not reciprocal. Coat, metal and plastic have `1 + F_ms (1 - E)/E` on their lobes, with
 //! `F_ms = F E_avg / (1 - F (1 - E_avg))`, for light between facets. Plastic keeps its index in air. The base has neither another width nor a factor.

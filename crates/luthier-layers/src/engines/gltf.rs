@@ -1,7 +1,7 @@
 //! The material of glTF 2.0: metal and plastic by `metallic` and `roughness`, below a coat.
 //!
 //! Sources: glTF 2.0 specification, appendix B (B.2, B.3); the extensions `KHR_materials_clearcoat` (section "Layering"), `_specular`, `_ior` and
-//! `_anisotropy`, as ratified. Three.js, Babylon.js and Bevy follow them.
+//! `_anisotropy`, as ratified.
 //!
 //! - GGX. B.3.2 prints Smith's masking as the product for both directions; most viewers have the height-correlated one, and so has `_anisotropy`.
 //! - Metal: Schlick's reflectance at the half vector, with the base colour as F0.
