@@ -39,16 +39,18 @@ struct Engine {
     shader: fn(&Surface) -> Shader,
     /// A shader whose cost is known.
     yardstick: Option<Yardstick>,
+    /// Name of the formula over a base that is changed once for its coat ([`Surface::remedied`]), which costs the same; of formulas with a shader.
+    changed: Option<&'static str>,
 }
 
 const ENGINES: [Engine; 7] = [
-    Engine { name: "glTF KHR_materials_clearcoat", shader: gltf::shader, yardstick: Some(Yardstick::GltfClearcoat) },
-    Engine { name: "Filament", shader: filament::shader, yardstick: Some(Yardstick::FilamentClearcoat) },
-    Engine { name: "Disney 2012", shader: disney::shader, yardstick: None },
-    Engine { name: "Standard Surface in MaterialX", shader: standard_surface::shader, yardstick: None },
-    Engine { name: "albedo scaling", shader: scaling::shader, yardstick: None },
-    Engine { name: "OpenPBR in MaterialX", shader: open_pbr::shader, yardstick: None },
-    Engine { name: "adobe/openpbr-bsdf", shader: adobe::shader, yardstick: None },
+    Engine { name: "glTF KHR_materials_clearcoat", shader: gltf::shader, yardstick: Some(Yardstick::GltfClearcoat), changed: Some("glTF, base changed") },
+    Engine { name: "Filament", shader: filament::shader, yardstick: Some(Yardstick::FilamentClearcoat), changed: Some("Filament, base changed") },
+    Engine { name: "Disney 2012", shader: disney::shader, yardstick: None, changed: None },
+    Engine { name: "Standard Surface in MaterialX", shader: standard_surface::shader, yardstick: None, changed: None },
+    Engine { name: "albedo scaling", shader: scaling::shader, yardstick: None, changed: None },
+    Engine { name: "OpenPBR in MaterialX", shader: open_pbr::shader, yardstick: None, changed: None },
+    Engine { name: "adobe/openpbr-bsdf", shader: adobe::shader, yardstick: None, changed: None },
 ];
 
 /// Models of luthier, after the engines.
@@ -85,6 +87,8 @@ pub(crate) struct Coated {
 /// A surface by the formula of an engine.
 pub(crate) struct Drawn {
     pub(crate) engine: &'static str,
+    /// Whether the base is changed for the coat.
+    pub(crate) is_changed: bool,
     pub(crate) yardstick: Option<Yardstick>,
     shader: Shader,
 }
@@ -99,16 +103,19 @@ impl Drawn {
 /// The coats of this page's first table.
 pub(crate) fn coated() -> Vec<Coated> {
     let coated = cases().into_iter().filter(|case| page::COATED.contains(&case.group));
-    let coated = (0_u32..).zip(coated).map(|(n, case)| Coated {
-        subject: subject(format!("coat-{n}"), &case),
-        drawn: ENGINES
-            .iter()
-            .map(|engine| Drawn {
-                engine: engine.name,
-                yardstick: engine.yardstick,
-                shader: (engine.shader)(&case.surface),
-            })
-            .collect(),
+    let coated = (0_u32..).zip(coated).map(|(n, case)| {
+        let changed = case.surface.remedied();
+        let drawn = |engine: &Engine, name, is_changed| Drawn {
+            engine: name,
+            is_changed,
+            yardstick: engine.yardstick,
+            shader: (engine.shader)(if is_changed { &changed } else { &case.surface }),
+        };
+        let engines = ENGINES.iter().flat_map(|engine| {
+            let of = [(Some(engine.name), false), (engine.changed, true)];
+            of.map(|(name, is_changed)| Some(drawn(engine, name?, is_changed)))
+        });
+        Coated { subject: subject(format!("coat-{n}"), &case), drawn: engines.flatten().collect() }
     });
     coated.collect()
 }

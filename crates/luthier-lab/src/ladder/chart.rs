@@ -5,6 +5,7 @@ use luthier_report::{PlotColor, Scatter, ScatterPanel, ScatterPoint};
 
 use super::Group;
 use super::page::medians;
+use super::rivals::Kind;
 use super::steps::Ask;
 use crate::lobes::ranks;
 
@@ -23,18 +24,20 @@ pub(super) fn chart(groups: &[Group], device: &DeviceCost) -> String {
     let scatter = Scatter {
         title: format!("lobe error against predicted time on {}", device.device),
         axes: [
-            format!("predicted, not timed: picoseconds for one light on an {}", device.device),
-            "lobe error at the worst view (a black surface has 0.5)".to_owned(),
+            format!("predicted, not timed: picoseconds for one light on an {}; reads of rows are assumed", device.device),
+            "lobe error at the worst of nine views".to_owned(),
         ],
-        untimed: "no shader here".to_owned(),
+        untimed: "not counted yet".to_owned(),
         kinds: vec![
             (PlotColor::Blue, "lobes of luthier: the default, and the cheapest within a limit on the error".to_owned()),
             (PlotColor::Ink, "published models".to_owned()),
             (
                 PlotColor::Red,
-                "clear coats of engines (marks: median of the stacks; lines: to the 95th percentile)".to_owned(),
+                "clear coats of engines and formats (marks: median of the stacks; lines: to the 95th percentile)".to_owned(),
             ),
+            (PlotColor::Green, "the same over a base that is changed once for its coat".to_owned()),
         ],
+        rules: vec![(0.5, "as wrong as a black surface".to_owned())],
         line: PlotColor::Blue,
         panels: panels.collect(),
     };
@@ -49,9 +52,9 @@ fn points(group: &Group) -> Vec<ScatterPoint> {
     let mut asks: Vec<ScatterPoint> = Vec::new();
     for (number, ask) in Ask::ALL.into_iter().enumerate() {
         let name = match ask {
-            Ask::Default => "lobes".to_owned(),
+            Ask::Default => "lobes, default".to_owned(),
             Ask::Least => "least error".to_owned(),
-            Ask::Limit(limit) => format!("≤ {limit}"),
+            Ask::Limit(limit) => format!("asked ≤ {limit}"),
         };
         let [one, ..] = medians(group.taken(number).map(|taken| &taken.costs));
         let errors = ranks(group.taken(number).map(|taken| taken.judged[0]));
@@ -68,7 +71,11 @@ fn points(group: &Group) -> Vec<ScatterPoint> {
     let rivals = first.iter().enumerate().filter_map(|(number, rival)| {
         let all = || group.stacks.iter().map(move |stack| &stack.rivals[number]);
         let x = rival.costs.map(|_| medians(all().filter_map(|rival| rival.costs.as_ref()))[0]);
-        let color = if rival.is_engine { PlotColor::Red } else { PlotColor::Ink };
+        let color = match rival.kind {
+            Kind::Published => PlotColor::Ink,
+            Kind::Engine => PlotColor::Red,
+            Kind::Changed => PlotColor::Green,
+        };
         Some(point(rival.charted?.to_owned(), x, ranks(all().map(|rival| rival.judged[0])), color))
     });
     let mut points: Vec<ScatterPoint> = asks.into_iter().chain(rivals).collect();

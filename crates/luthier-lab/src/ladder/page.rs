@@ -21,7 +21,8 @@ const INTRODUCTION: &str = "\nWhere a file or the command line limits the errors
     one lobe of one width, one lobe, two, or three. Without limits it takes the fewest lobes that fit as well as two. This page takes each material by itself, with a limit on the albedo of .4 times that on the lobe error. \
     Where no form holds a limit, a bake refuses; the page takes the form with the least error there: the one that holds the tightest limit, which *least error* has for every material. \
     Errors of the first tables are those that the bake states: the largest of five views that no fit saw, and of the albedo at rows that were left out, with the noise of the judge in them (.006 to .009). Costs are picoseconds of a light on one view, medians over the \
-    materials; in brackets is the median over the cost of `gltf-clearcoat` for as many lights.\n";
+    materials; in brackets is the median over the cost of `gltf-clearcoat` for as many lights. \
+    *No lobe* is the first bounce in closed form and a wide rest; *one lobe of one width* has a width that is the same for all views. A *row* is the table of a material over the cosine of the view; *rows over more than the view* are over a slope parameter, a factor or the azimuth, too.\n";
 
 const OF_RANDOM: &str = "\nRandom stacks are those of [lobes.md](lobes.md), by the same numbers, as far as they have two interfaces that refract or mirror light: up to four coats over a metal, or two to four over a diffuse base.\n";
 
@@ -33,7 +34,8 @@ const OF_COATS: &str =
     "\nThese are the coats of [coats.md](coats.md): clear, over metals, plastics and mixtures of both.\n";
 
 const BESIDE: &str = "The tables that ship, read as a shader reads them, stand here beside published models and formulas of engines, on the same stacks. Errors are those of [lobes.md](lobes.md): against its judge, the largest of nine angles of the eye, 0 to 85 degrees, and three \
-    channels. [coats.md](coats.md) has the median over its views instead. Lobes within a limit are the tables of that row above. A formula without costs has no shader here. The Filament of `coats` compensates the specular lobe of its base for light lost between facets, by a table; the shader whose cost stands here does not read one. *Lobe error* is the light that has to move to another direction and half of what is missing or too much, over all light: a black surface has 0.5 ([models.md](models.md)).\n";
+    channels. They are lower than those of the first tables, because fewer paths of the judge are noise in them. [coats.md](coats.md) has the median over its views instead. Lobes within a limit are the tables of that row above: where no form holds the limit, the one with the least error, so that a row may lie above its limit. \
+    A formula without costs was not counted yet. *Base changed* is the formula over a base that is widened and darkened once for its coat ([coats.md](coats.md#what-each-could-change)), at the same cost. The Filament of `coats` compensates the specular lobe of its base for light lost between facets, by a table; the shader whose cost stands here does not read one. *Lobe error* is the light that has to move to another direction and half of what is missing or too much, over all light: a black surface has 0.5 ([models.md](models.md)).\n";
 
 /// Median of costs by number of lights.
 pub(super) fn medians<'a>(all: impl Iterator<Item = &'a Costs>) -> Costs {
@@ -67,7 +69,7 @@ pub(super) fn page(
     let mut page = String::new();
     writeln!(
         page,
-        "# A ladder of lobes\n\nMade by `{command}`, {GENERATOR}. Costs are predicted {}: they come from counts of the texts and costs that were fitted to times of other shaders, and are no times.",
+        "# A ladder of lobes\n\nMade by `{command}`, {GENERATOR}. Costs are predicted {}: they come from counts of the shaders' sources and costs that were fitted to times of other shaders, and are not measurements.",
         device.label()
     )?;
     if !device.assumed.is_empty() {

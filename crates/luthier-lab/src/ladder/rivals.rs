@@ -22,6 +22,17 @@ const MODELS: [(ShadingModel, Option<&str>); 6] = [
     (ShadingModel::Yamaguchi, None),
 ];
 
+/// Where a formula comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// A paper.
+    Published,
+    /// An engine, or a format of files.
+    Engine,
+    /// An engine, over a base that is changed once for the coat.
+    Changed,
+}
+
 /// A model or formula on a stack.
 #[derive(Debug, Clone)]
 pub(super) struct Rival {
@@ -29,7 +40,7 @@ pub(super) struct Rival {
     pub(super) name: &'static str,
     /// Name on the chart, if it is there.
     pub(super) charted: Option<&'static str>,
-    pub(super) is_engine: bool,
+    pub(super) kind: Kind,
     /// Lobe error and albedo error, the largest of all views.
     pub(super) judged: [f64; QUANTITIES],
     /// Costs, if it has a shader here.
@@ -48,13 +59,14 @@ pub(super) fn rivals(
         let Some(model) = model(shaded.name()) else { continue };
         let judged = largest(&reference.errors(Shown::Model(model.as_ref())));
         let costs = Some(by(shaded, material, device)?);
-        found.push(Rival { name: shaded.name(), charted, is_engine: false, judged, costs });
+        found.push(Rival { name: shaded.name(), charted, kind: Kind::Published, judged, costs });
     }
     for drawn in drawn {
         let judged = largest(&reference.errors(Shown::Values(&|wi, wo| drawn.eval(wi, wo))));
         let timed = drawn.yardstick.map(|yardstick| costs(device, |lights| count(&yardstick.wgsl(), &[], lights)));
         let (name, charted) = (drawn.engine, Some(short(drawn.engine)));
-        found.push(Rival { name, charted, is_engine: true, judged, costs: timed.transpose()? });
+        let kind = if drawn.is_changed { Kind::Changed } else { Kind::Engine };
+        found.push(Rival { name, charted, kind, judged, costs: timed.transpose()? });
     }
     Ok(found)
 }

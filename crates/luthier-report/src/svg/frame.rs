@@ -168,6 +168,11 @@ impl Frame {
         let _ = write!(self.body, "<path class=\"span\" d=\"M{x0:.1} {y:.1}H{x1:.1}\"/>");
     }
 
+    /// A thin line from a mark to its name, between two places in pixels.
+    pub(crate) fn leader(&mut self, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) {
+        let _ = write!(self.body, "<path class=\"leader\" d=\"M{x0:.1} {y0:.1}L{x1:.1} {y1:.1}\"/>");
+    }
+
     /// A line between two pixels of a column.
     pub(crate) fn upright(&mut self, class: &str, x: f64, [y0, y1]: [f64; 2]) {
         let _ = write!(self.body, "<path class=\"{class}\" d=\"M{x:.1} {y0:.1}V{y1:.1}\"/>");

@@ -18,6 +18,7 @@ use crate::text::format::escape;
 ///     untimed: "no shader".to_owned(),
 ///     kinds: vec![(PlotColor::Red, "engines".to_owned())],
 ///     line: PlotColor::Blue,
+///     rules: vec![(0.5, "black".to_owned())],
 ///     panels: vec![panel],
 /// }
 /// .to_svg();
@@ -35,6 +36,8 @@ pub struct Scatter {
     pub kinds: Vec<(PlotColor, String)>,
     /// The kind whose points a line connects, in their order.
     pub line: PlotColor,
+    /// Values up with a line across, and its words.
+    pub rules: Vec<(f64, String)>,
     /// The panels, from left to right.
     pub panels: Vec<ScatterPanel>,
 }
@@ -69,7 +72,7 @@ const PANEL: [f64; 2] = [560.0, 470.0];
 const MARGIN: Margin = Margin { left: 46.0, right: 16.0, top: 52.0, bottom: 44.0 };
 
 /// Width of the column of points without a place across.
-const COLUMN: f64 = 178.0;
+const COLUMN: f64 = 226.0;
 
 /// Height of the legend above the panels.
 const LEGEND: f64 = 30.0;
@@ -79,6 +82,9 @@ const MARK: f64 = 6.0;
 
 /// Height of a name, and width of a letter.
 const LETTER: [f64; 2] = [14.0, 6.8];
+
+/// Distance of two marks in the column of points without a place across.
+const APART: f64 = 9.0;
 
 /// A rectangle: left, top, right, bottom.
 type Area = [f64; 4];
@@ -147,25 +153,51 @@ impl Scatter {
         if panel.points.iter().any(|point| point.x.is_none()) {
             frame.text(edge + 20.0, 40.0, "start", "title", &self.untimed);
         }
+        for (value, words) in &self.rules {
+            frame.rule_y(*value, words);
+        }
         let joined = panel.points.iter().filter(|point| point.color == self.line);
-        frame.line(self.line.class(), "", joined.filter_map(|point| Some(Some((point.x?, point.y)))));
+        let joined: Vec<(f64, f64)> = joined.filter_map(|point| Some((point.x?, point.y))).collect();
+        frame.line(self.line.class(), "", joined.iter().copied().map(Some));
+        // Points without a place across stand side by side, the lowest error first.
+        let mut column: Vec<f64> = panel.points.iter().filter(|point| point.x.is_none()).map(|point| point.y).collect();
+        column.sort_by(f64::total_cmp);
+        let beside = |y: f64| edge + 26.0 + APART * column.iter().take_while(|other| **other < y).count() as f64;
         let places: Vec<[f64; 2]> = panel
             .points
             .iter()
-            .map(|point| [point.x.map_or(edge + 26.0, |x| frame.px(x)), frame.py(point.y)])
+            .map(|point| [point.x.map_or_else(|| beside(point.y), |x| frame.px(x)), frame.py(point.y)])
             .collect();
+        let mut taken: Vec<Area> = places.iter().map(|[at, up]| [at - MARK, up - MARK, at + MARK, up + MARK]).collect();
         for (point, &[at, up]) in panel.points.iter().zip(&places) {
             let class = format!("line reach {}", point.color.class());
-            frame.upright(&class, at, [up, frame.py(point.reach)]);
+            let reach = frame.py(point.reach);
+            frame.upright(&class, at, [up, reach]);
             frame.mark(series(point.color), at, up, &point.name);
+            taken.push([at - 1.0, reach, at + 1.0, up]);
         }
-        // Names keep off marks and off each other, as far as there is room.
-        let mut taken: Vec<Area> = places.iter().map(|[at, up]| [at - MARK, up - MARK, at + MARK, up + MARK]).collect();
-        for (point, &[at, up]) in panel.points.iter().zip(&places).filter(|(point, _)| !point.name.is_empty()) {
-            let room = if point.x.is_some() { [margin.left, edge] } else { [at, size[0]] };
-            let (area, anchor, place) = free(&point.name, [at, up], room, &taken);
+        let along = joined.windows(2).flat_map(|ends| {
+            let [from, to] = [ends[0], ends[1]].map(|(x, y)| [frame.px(x), frame.py(y)]);
+            [0.1, 0.3, 0.5, 0.7, 0.9].map(|t: f64| [0, 1].map(|axis: usize| from[axis] + t * (to[axis] - from[axis])))
+        });
+        taken.extend(along.map(|[x, y]| [x - 1.0, y - 1.0, x + 1.0, y + 1.0]));
+        // Names keep off marks, lines and each other, as far as there is room.
+        let named = panel.points.iter().zip(&places).filter(|(point, _)| !point.name.is_empty());
+        let (inside, outside): (Vec<_>, Vec<_>) = named.partition(|(point, _)| point.x.is_some());
+        for (point, &[at, up]) in inside {
+            let (area, anchor, place) = free(&point.name, [at, up], [margin.left, edge], &taken);
             frame.text(place[0], place[1], anchor, "name", &point.name);
             taken.push(area);
+        }
+        // Those of the column stand below each other at its right, each with a line to its mark.
+        let right = edge + 26.0 + APART * column.len() as f64;
+        let mut outside: Vec<_> = outside.into_iter().map(|(point, &place)| (point, place)).collect();
+        outside.sort_by(|(_, a), (_, b)| a[1].total_cmp(&b[1]));
+        let mut last = f64::NEG_INFINITY;
+        for (point, [at, up]) in outside {
+            last = up.max(last + LETTER[0] + 1.0);
+            frame.leader([at + MARK, up], [right - 3.0, last]);
+            frame.text(right, last + 4.5, "start", "name", &point.name);
         }
         frame.finish_still(&panel.title)
     }
@@ -203,12 +235,14 @@ mod tests {
             untimed: "no time".to_owned(),
             kinds: vec![(PlotColor::Blue, "ours".to_owned())],
             line: PlotColor::Blue,
+            rules: vec![(0.2, "a fifth".to_owned())],
             panels: vec![ScatterPanel {
                 title: "p".to_owned(),
                 points: vec![
                     point("one", Some(2.0), PlotColor::Blue),
                     point("two", Some(2.02), PlotColor::Blue),
                     point("three", None, PlotColor::Red),
+                    ScatterPoint { y: 0.101, ..point("four", None, PlotColor::Red) },
                 ],
             }],
         };
@@ -219,8 +253,12 @@ mod tests {
                 document.descendants().find(|n| n.tag_name().name() == "text" && n.text() == Some(name)).unwrap();
             ["x", "y"].map(|axis| node.attribute(axis).unwrap().parse::<f64>().unwrap())
         };
-        let [one, two, three] = ["one", "two", "three"].map(place);
+        let [one, two, three, four] = ["one", "two", "three", "four"].map(place);
         assert!(one != two, "{one:?} {two:?}");
+        // Marks that nearly lie on each other have names below each other, and lines to these.
+        assert!((three[1] - four[1]).abs() >= LETTER[0], "{three:?} {four:?}");
+        assert_eq!(text.matches("class=\"leader\"").count(), 2);
+        assert!(place("a fifth")[1] < three[1]);
         assert!(three[0] > PANEL[0] - MARGIN.right && place("no time")[0] > PANEL[0] - MARGIN.right, "{three:?}");
         // Two joined points, and no other line across.
         assert_eq!(text.matches("class=\"line p-blue\"").count(), 1);
