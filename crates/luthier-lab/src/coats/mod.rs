@@ -44,8 +44,18 @@ struct Engine {
 }
 
 const ENGINES: [Engine; 7] = [
-    Engine { name: "glTF KHR_materials_clearcoat", shader: gltf::shader, yardstick: Some(Yardstick::GltfClearcoat), changed: Some("glTF, base changed") },
-    Engine { name: "Filament", shader: filament::shader, yardstick: Some(Yardstick::FilamentClearcoat), changed: Some("Filament, base changed") },
+    Engine {
+        name: "glTF KHR_materials_clearcoat",
+        shader: gltf::shader,
+        yardstick: Some(Yardstick::GltfClearcoat),
+        changed: Some("glTF, base changed"),
+    },
+    Engine {
+        name: "Filament",
+        shader: filament::shader,
+        yardstick: Some(Yardstick::FilamentClearcoat),
+        changed: Some("Filament, base changed"),
+    },
     Engine { name: "Disney 2012", shader: disney::shader, yardstick: None, changed: None },
     Engine { name: "Standard Surface in MaterialX", shader: standard_surface::shader, yardstick: None, changed: None },
     Engine { name: "albedo scaling", shader: scaling::shader, yardstick: None, changed: None },

@@ -24,7 +24,10 @@ pub(super) fn chart(groups: &[Group], device: &DeviceCost) -> String {
     let scatter = Scatter {
         title: format!("lobe error against predicted time on {}", device.device),
         axes: [
-            format!("predicted, not timed: picoseconds for one light on an {}; reads of rows are assumed", device.device),
+            format!(
+                "predicted, not timed: picoseconds for one light on an {}; reads of rows are assumed",
+                device.device
+            ),
             "lobe error at the worst of nine views".to_owned(),
         ],
         untimed: "not counted yet".to_owned(),
@@ -33,7 +36,8 @@ pub(super) fn chart(groups: &[Group], device: &DeviceCost) -> String {
             (PlotColor::Ink, "published models".to_owned()),
             (
                 PlotColor::Red,
-                "clear coats of engines and formats (marks: median of the stacks; lines: to the 95th percentile)".to_owned(),
+                "clear coats of engines and formats (marks: median of the stacks; lines: to the 95th percentile)"
+                    .to_owned(),
             ),
             (PlotColor::Green, "the same over a base that is changed once for its coat".to_owned()),
         ],

@@ -34,7 +34,7 @@ const OF_COATS: &str =
     "\nThese are the coats of [coats.md](coats.md): clear, over metals, plastics and mixtures of both.\n";
 
 const BESIDE: &str = "The tables that ship, read as a shader reads them, stand here beside published models and formulas of engines, on the same stacks. Errors are those of [lobes.md](lobes.md): against its judge, the largest of nine angles of the eye, 0 to 85 degrees, and three \
-    channels. They are lower than those of the first tables, because fewer paths of the judge are noise in them. [coats.md](coats.md) has the median over its views instead. Lobes within a limit are the tables of that row above: where no form holds the limit, the one with the least error, so that a row may lie above its limit. \
+    channels. They are lower than those of the first tables, which have the noise of a bake in them (.006 to .009). [coats.md](coats.md) has the median over its views instead. Lobes within a limit are the tables of that row above: where no form holds the limit, the one with the least error, so that a row may lie above its limit. \
     A formula without costs was not counted yet. *Base changed* is the formula over a base that is widened and darkened once for its coat ([coats.md](coats.md#what-each-could-change)), at the same cost. The Filament of `coats` compensates the specular lobe of its base for light lost between facets, by a table; the shader whose cost stands here does not read one. *Lobe error* is the light that has to move to another direction and half of what is missing or too much, over all light: a black surface has 0.5 ([models.md](models.md)).\n";
 
 /// Median of costs by number of lights.

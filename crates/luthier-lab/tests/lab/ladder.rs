@@ -68,7 +68,15 @@ fn tables_have_the_errors_of_their_fits() {
     };
     assert!(error("lobes") < 0.5 * error("belcour") && error("belcour") < error("glTF KHR_materials_clearcoat"));
     let svg = workshop.text("made.svg");
-    for text in ["glTF clear coat", "OpenPBR (Adobe)", "Belcour 2018", "not counted yet", "glTF, base changed", "H100", "1 random stack"] {
+    for text in [
+        "glTF clear coat",
+        "OpenPBR (Adobe)",
+        "Belcour 2018",
+        "not counted yet",
+        "glTF, base changed",
+        "H100",
+        "1 random stack",
+    ] {
         assert!(svg.contains(text), "no {text} in {svg}");
     }
 }
