@@ -3,9 +3,12 @@
 use std::collections::HashMap;
 
 use bevy::asset::io::Reader;
-use bevy::asset::{Asset, AssetLoader, Handle, LoadContext, ParseAssetPathError, RenderAssetUsages, ReadAssetBytesError};
+use bevy::asset::{
+    Asset, AssetLoader, Handle, LoadContext, ParseAssetPathError, ReadAssetBytesError, RenderAssetUsages,
+};
 use bevy::image::{
-    CompressedImageFormats, Image, ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor, ImageType, TextureError,
+    CompressedImageFormats, Image, ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor, ImageType,
+    TextureError,
 };
 use bevy::reflect::TypePath;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
@@ -91,10 +94,12 @@ impl AssetLoader for LuthierLoader {
         if bevy::tasks::futures_lite::AsyncReadExt::read_to_string(reader, &mut json).await.is_err() {
             return Err(LuthierError::Text(path));
         }
-        let manifest = Manifest::from_json(&json).map_err(|error| LuthierError::Manifest { path: path.clone(), error })?;
+        let manifest =
+            Manifest::from_json(&json).map_err(|error| LuthierError::Manifest { path: path.clone(), error })?;
         let shader = shown(&manifest).map_err(|problem| LuthierError::Bake { path, problem })?;
 
-        let text = String::from_utf8(read(context, &shader.file.path).await?).map_err(|_| LuthierError::Text(shader.file.path.clone()))?;
+        let text = String::from_utf8(read(context, &shader.file.path).await?)
+            .map_err(|_| LuthierError::Text(shader.file.path.clone()))?;
         let interface = shader.interface.clone().unwrap_or_default();
         let surface = Surface::new(&manifest, &interface, &text)?;
         let wgsl = program(&text, &manifest.functions, &surface);
@@ -103,8 +108,12 @@ impl AssetLoader for LuthierLoader {
         let mut tables = HashMap::new();
         for table in &manifest.tables {
             let bytes = read(context, &table.texture.path).await?;
-            let image = table_image(&bytes).map_err(|error| LuthierError::Table { path: table.texture.path.clone(), error })?;
-            tables.insert(format!("luthier_{}", table.kind), context.add_labeled_asset(format!("table/{}", table.kind), image));
+            let image =
+                table_image(&bytes).map_err(|error| LuthierError::Table { path: table.texture.path.clone(), error })?;
+            tables.insert(
+                format!("luthier_{}", table.kind),
+                context.add_labeled_asset(format!("table/{}", table.kind), image),
+            );
         }
         let table = |name: &str| tables.get(name).cloned();
         let words = read(context, &manifest.material_buffer.path).await?;
@@ -118,7 +127,8 @@ impl AssetLoader for LuthierLoader {
                 let key = (map.file.path.clone(), map.srgb, map.slot == MapSlot::FlakeNormal);
                 if !maps.contains_key(&key) {
                     let bytes = read(context, &map.file.path).await?;
-                    let image = map_image(&bytes, map, settings.mipmaps).map_err(|error| LuthierError::Map { path: map.file.path.clone(), error })?;
+                    let image = map_image(&bytes, map, settings.mipmaps)
+                        .map_err(|error| LuthierError::Map { path: map.file.path.clone(), error })?;
                     maps.insert(key.clone(), context.add_labeled_asset(format!("map/{}", maps.len()), image));
                 }
                 textures.push(maps[&key].clone());
@@ -165,7 +175,9 @@ fn shown(manifest: &Manifest) -> Result<&ShaderEntry, &'static str> {
         return Err("the shader takes no normals and maps of a renderer: bake with --functions surface");
     }
     if !manifest.names.is_default() {
-        return Err("the names of the bake have a prefix or places of their own: bake without --prefix, --group and --first-binding");
+        return Err(
+            "the names of the bake have a prefix or places of their own: bake without --prefix, --group and --first-binding",
+        );
     }
     if manifest.bindings.iter().any(|binding| binding.resource == "buffer<vec4<u32>>") {
         // Bindings of a material of Bevy are fixed when it is compiled: here all tables are textures.
@@ -176,15 +188,22 @@ fn shown(manifest: &Manifest) -> Result<&ShaderEntry, &'static str> {
 
 /// The bytes of a file beside the manifest. The bake is loaded again where they change.
 async fn read(context: &mut LoadContext<'_>, path: &str) -> Result<Vec<u8>, LuthierError> {
-    let file = context.path().resolve_embed_str(path).map_err(|error| LuthierError::Path { path: path.to_owned(), error })?;
+    let file =
+        context.path().resolve_embed_str(path).map_err(|error| LuthierError::Path { path: path.to_owned(), error })?;
     context.read_asset_bytes(file).await.map_err(|error| LuthierError::Read { path: path.to_owned(), error })
 }
 
 /// The texture of a table, which ends at its edges.
 fn table_image(bytes: &[u8]) -> Result<Image, TextureError> {
     let kind = ImageType::Extension("ktx2");
-    let mut image =
-        Image::from_buffer(bytes, kind, CompressedImageFormats::NONE, false, ImageSampler::linear(), RenderAssetUsages::RENDER_WORLD)?;
+    let mut image = Image::from_buffer(
+        bytes,
+        kind,
+        CompressedImageFormats::NONE,
+        false,
+        ImageSampler::linear(),
+        RenderAssetUsages::RENDER_WORLD,
+    )?;
     // Bevy takes a texture of one row for a one-dimensional one.
     image.texture_descriptor.dimension = TextureDimension::D2;
     Ok(image)
@@ -198,7 +217,8 @@ fn map_image(bytes: &[u8], map: &MapEntry, mipmaps: bool) -> Result<Image, image
     let levels = if mipmaps && !is_cells { width.max(height).ilog2() + 1 } else { 1 };
     let mut texels = picture.as_raw().clone();
     for level in 1..levels {
-        let smaller = imageops::resize(&picture, (width >> level).max(1), (height >> level).max(1), FilterType::Triangle);
+        let smaller =
+            imageops::resize(&picture, (width >> level).max(1), (height >> level).max(1), FilterType::Triangle);
         texels.extend_from_slice(smaller.as_raw());
     }
     let size = Extent3d { width, height, depth_or_array_layers: 1 };

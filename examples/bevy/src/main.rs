@@ -122,12 +122,7 @@ fn start() -> Result<AppExit> {
         .run())
 }
 
-fn setup(
-    scene: Res<Description>,
-    server: Res<AssetServer>,
-    mut commands: Commands,
-    mut images: ResMut<Assets<Image>>,
-) {
+fn setup(scene: Res<Description>, server: Res<AssetServer>, mut commands: Commands, mut images: ResMut<Assets<Image>>) {
     // `preview` reads level 0 of maps.
     let plain = |settings: &mut LuthierSettings| settings.mipmaps = false;
     let bake = server.load_builder().with_settings(plain).load("manifest.json");
@@ -171,7 +166,15 @@ fn spawn(commands: &mut Commands, lamp: &Lamp) {
     let place = Transform::from_translation(position).looking_at(Vec3::ZERO, Vec3::Y);
     if let Some(cone) = lamp.cone_deg {
         let angle = cone.to_radians();
-        let light = SpotLight { color, intensity, range, shadow_maps_enabled, outer_angle: angle, inner_angle: 0.99 * angle, ..default() };
+        let light = SpotLight {
+            color,
+            intensity,
+            range,
+            shadow_maps_enabled,
+            outer_angle: angle,
+            inner_angle: 0.99 * angle,
+            ..default()
+        };
         commands.spawn((light, place));
     } else {
         commands.spawn((PointLight { color, intensity, range, shadow_maps_enabled, ..default() }, place));

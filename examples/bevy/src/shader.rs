@@ -9,7 +9,8 @@ pub fn program(text: &str, functions: &Functions, surface: &Surface) -> String {
     let reads = (0..surface.width).map(|i| {
         let kind = format!("luthier_numbers.kinds[{}][{}]", i / 4, i % 4);
         let at = format!("luthier_at({kind}, {i}u, uv, textureDimensions(luthier_map_{i}))");
-        let texel = format!("luthier_numbers.factors[{i}].rgb * textureSample(luthier_map_{i}, luthier_map_sampler, {at}).rgb");
+        let texel =
+            format!("luthier_numbers.factors[{i}].rgb * textureSample(luthier_map_{i}, luthier_map_sampler, {at}).rgb");
         format!("base = luthier_texel(material, {kind}, distance, {texel}, base);\n")
     });
     let light = if functions.has(FunctionGroup::Surface) && text.contains("fn luthier_light_lit(") {

@@ -72,7 +72,8 @@ impl Host {
     fn bake(&self, name: &str, materials: &[&str], functions: &str) -> String {
         let folder = self.at(name);
         let _ = fs::remove_dir_all(&folder);
-        let options = ["--out", &folder, "--target", "wgsl", "--form", "baked", "--no-fit", "--quiet", "--functions", functions];
+        let options =
+            ["--out", &folder, "--target", "wgsl", "--form", "baked", "--no-fit", "--quiet", "--functions", functions];
         self.luthier(&[&["bake"], materials, &options].concat());
         folder
     }
@@ -99,7 +100,22 @@ impl Host {
         dark.extend([0; 8]);
         fs::write(&black, dark).unwrap();
         let color = LAMP.map(|value| value.to_string()).join(",");
-        let ball = ["preview", material, "--out", bake, "-o", &png, "--shape", "sphere", "--size", "256", "--samples", "1", "--tone", "none"];
+        let ball = [
+            "preview",
+            material,
+            "--out",
+            bake,
+            "-o",
+            &png,
+            "--shape",
+            "sphere",
+            "--size",
+            "256",
+            "--samples",
+            "1",
+            "--tone",
+            "none",
+        ];
         let dark = ["--light-color", &color, "--background", "--environment", &black, "--environment-samples", "1"];
         self.luthier(&[&ball[..], &dark, light].concat());
         read(&png)
@@ -152,14 +168,22 @@ impl Host {
             lamp["shadows"] = json!(true);
             let shadowed = self.picture(&bake, &lit(lamp), &format!("{kind}-shadow.png"));
             let count = |picture: &RgbImage| picture.pixels().filter(|pixel| bright(pixel) > 20).count();
-            let dark = open.pixels().zip(shadowed.pixels()).filter(|(open, shadowed)| bright(open) > bright(shadowed) + 10).count();
-            self.check(count(&open) > 1000 && dark > 300, format!("a {kind} lamp: {} pixels lit, {dark} of them in its shadow", count(&open)));
+            let dark = open
+                .pixels()
+                .zip(shadowed.pixels())
+                .filter(|(open, shadowed)| bright(open) > bright(shadowed) + 10)
+                .count();
+            self.check(
+                count(&open) > 1000 && dark > 300,
+                format!("a {kind} lamp: {} pixels lit, {dark} of them in its shadow", count(&open)),
+            );
             pictures.push(open);
         }
         let [_, point, spot] = pictures.as_slice() else { unreachable!() };
         let pairs = || point.pixels().zip(spot.pixels());
         let outside = pairs().filter(|(point, spot)| bright(point) > 10 && bright(spot) == 0).count();
-        let other = pairs().filter(|(point, spot)| bright(spot) > 0 && bright(point).abs_diff(bright(spot)) > 1).count();
+        let other =
+            pairs().filter(|(point, spot)| bright(spot) > 0 && bright(point).abs_diff(bright(spot)) > 1).count();
         let inside = pairs().filter(|(_, spot)| bright(spot) > 0).count();
         self.check(
             outside > 1000 && inside > 1000 && other * 20 < inside,
@@ -192,7 +216,10 @@ impl Host {
         let (before, after) = (apart(&expected, &read(&before)), apart(&expected, &read(&after)));
         self.check(
             before.median > 5 && after.most <= 1,
-            format!("a bake that is written anew is shown: median {} of 255 off before, largest {} after", before.median, after.most),
+            format!(
+                "a bake that is written anew is shown: median {} of 255 off before, largest {} after",
+                before.median, after.most
+            ),
         );
     }
 
@@ -242,7 +269,10 @@ fn swap_colours(text: &str) -> String {
         let (head, rest) = line.split_once('[')?;
         let (list, tail) = rest.split_once(']')?;
         let [r, g, b] = list.split(',').map(str::trim).collect::<Vec<_>>().try_into().ok()?;
-        [r, g, b].iter().all(|number: &&str| number.parse::<f64>().is_ok()).then(|| format!("{head}[{g}, {r}, {b}]{tail}"))
+        [r, g, b]
+            .iter()
+            .all(|number: &&str| number.parse::<f64>().is_ok())
+            .then(|| format!("{head}[{g}, {r}, {b}]{tail}"))
     };
     text.lines().map(|line| swap(line).unwrap_or_else(|| line.to_owned()) + "\n").collect()
 }
