@@ -1,0 +1,166 @@
+# The spatial shader of a bake: its text in GLSL ES 3.00, which Godot's language takes but for the declarations of textures, and the two functions that call
+# it. fragment() fills the place from the maps, light() asks for each lamp. Godot has no global variables, varyings are no structures, and few: the numbers of
+# the place go to light() four by four, and it prepares them for the eye. The same file serves Godot 3.6 and 4.
+
+# Words of a texture uniform in Godot 4, by how it is read. In 3.6 filters are flags of the texture.
+const HINTS_4 = {
+	"table": " : filter_linear, repeat_disable",
+	"words": " : filter_nearest, repeat_disable",
+	"linear": " : filter_linear_mipmap_anisotropic, repeat_enable, hint_default_white",
+	"cells": " : filter_nearest, repeat_enable, hint_default_white",
+}
+const HINTS_3 = {"table": "", "words": "", "linear": " : hint_white", "cells": " : hint_white"}
+
+
+# The text, of the bake's GLSL and its `surface`. `nearest` names the tables that are not filtered.
+static func text_of(glsl, surface, nearest, version):
+	var hints = HINTS_4 if version >= 4 else HINTS_3
+	var uniforms = ""
+	var texels = ""
+	for i in range(surface.reads.size()):
+		uniforms += "uniform sampler2D luthier_map_%d%s;\nuniform bool luthier_is_srgb_%d = false;\n" % [i, hints[surface.reads[i]], i]
+		uniforms += "uniform int luthier_kind_%d = 0;\nuniform vec3 luthier_factor_%d = vec3(1.0);\n" % [i, i]
+		uniforms += "uniform vec3 luthier_u_%d = vec3(1.0, 0.0, 0.0);\nuniform vec3 luthier_v_%d = vec3(0.0, 1.0, 0.0);\n" % [i, i]
+		texels += "\tkind = luthier_kind_%d;\n" % i
+		texels += "\tt = texture(luthier_map_%d, vec2(dot(luthier_u_%d, vec3(uv, 1.0)), dot(luthier_v_%d, vec3(uv, 1.0)))).rgb;\n" % [i, i, i]
+		texels += "\tt = luthier_factor_%d * (luthier_is_srgb_%d ? luthier_linear(t) : t);\n" % [i, i]
+		for k in range(surface.lines.size()):
+			texels += "\tif (kind == %d) { %s }\n" % [k + 1, surface.lines[k]]
+	var numbers = _numbers("LuthierPlace", "here", _structures(glsl))
+	var sent = ""
+	var received = ""
+	for i in range(numbers.size()):
+		var number = "luthier_sent_%d.%s" % [i / 4, "xyzw"[i % 4]]
+		sent += "\t%s = %s;\n" % [number, numbers[i]]
+		received += "\t%s = %s;\n" % [numbers[i], number]
+	var varyings = ""
+	for i in range((numbers.size() + 3) / 4):
+		varyings += "varying vec4 luthier_sent_%d;\n" % i
+	var lit = "color * luthier_light(prepared, direction)"
+	if surface.has("luthier_light_lit"):
+		lit = "luthier_light_lit(prepared, direction, color)"
+	return TEXT.format({
+		"glsl": _declared(glsl, hints, nearest), "uniforms": uniforms, "before": surface.before, "texels": texels, "after": surface.after,
+		"varyings": varyings, "sent": sent, "received": received, "lit": lit,
+	}, "<_>")
+
+
+# The GLSL with the textures as Godot declares them.
+static func _declared(glsl, hints, nearest):
+	var declaration = RegEx.new()
+	declaration.compile("uniform highp sampler2D (\\w+);")
+	for found in declaration.search_all(glsl):
+		var name = found.get_string(1)
+		var hint = hints["words" if name in nearest else "table"]
+		glsl = glsl.replace(found.get_string(), "uniform sampler2D %s%s;" % [name, hint])
+	return glsl
+
+
+# Members of each structure, with their types: [type, name, number of elements or 0].
+static func _structures(glsl):
+	var comments = RegEx.new()
+	comments.compile("//[^\\n]*")
+	var structure = RegEx.new()
+	structure.compile("struct (\\w+) \\{([^}]*)\\}")
+	var member = RegEx.new()
+	member.compile("(\\w+) (\\w+)(?:\\[(\\d+)\\])?;")
+	var all = {}
+	for found in structure.search_all(comments.sub(glsl, "", true)):
+		var members = []
+		for line in member.search_all(found.get_string(2)):
+			members.append([line.get_string(1), line.get_string(2), int(line.get_string(3))])
+		all[found.get_string(1)] = members
+	return all
+
+
+# All numbers of a variable, which are floats and vectors of them.
+static func _numbers(type, path, structures):
+	if type == "float":
+		return [path]
+	var all = []
+	if type in ["vec2", "vec3", "vec4"]:
+		for i in range(int(type[3])):
+			all.append("%s.%s" % [path, "xyzw"[i]])
+		return all
+	for member in structures[type]:
+		var inner = "%s.%s" % [path, member[1]]
+		if member[2] == 0:
+			all += _numbers(member[0], inner, structures)
+		for i in range(member[2]):
+			all += _numbers(member[0], "%s[%d]" % [inner, i], structures)
+	return all
+
+
+const TEXT = """shader_type spatial;
+render_mode ambient_light_disabled;
+
+<glsl>
+uniform int luthier_material = 0;
+uniform float luthier_slope_variance = 0.0;
+uniform vec4 luthier_map_base = vec4(0.0, 0.0, 0.0, -1.0);
+<uniforms>
+varying vec4 luthier_tangent;
+<varyings>
+vec3 luthier_unit_normal(vec3 t) {
+	vec3 n = 2.0 * t - 1.0;
+	return normalize(vec3(n.xy, max(n.z, 0.001)));
+}
+
+// Colours of a texture. By its own hint for them the renderer Compatibility leaves them as they are.
+vec3 luthier_linear(vec3 t) {
+	return mix(pow((t + 0.055) / 1.055, vec3(2.4)), t / 12.92, lessThanEqual(t, vec3(0.04045)));
+}
+
+// Slopes add up.
+vec3 luthier_lean(vec3 own, vec3 film) {
+	return normalize(vec3(film.xy * own.z + own.xy * film.z, film.z * own.z));
+}
+
+// Tangent, and side of the bitangent, which is against v. Without a tangent of the mesh it follows u.
+vec4 luthier_make_tangent(vec3 normal, vec3 given, vec3 given_across, vec3 p0, vec3 p1, vec2 t0, vec2 t1) {
+	vec3 e0 = cross(p1, normal);
+	vec3 e1 = cross(normal, p0);
+	float side = dot(p0, e0) < 0.0 ? -1.0 : 1.0;
+	vec3 along = side * (e0 * t0.x + e1 * t1.x);
+	float w = side * dot(cross(normal, along), e0 * t0.y + e1 * t1.y) > 0.0 ? -1.0 : 1.0;
+	if (dot(given, given) > 0.25) {
+		along = given;
+		w = dot(cross(normal, given), given_across) < 0.0 ? -1.0 : 1.0;
+	}
+	along -= normal * dot(normal, along);
+	vec3 across = cross(normal, abs(normal.x) > 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0));
+	return vec4(normalize(dot(along, along) > 1e-30 ? along : across), w);
+}
+
+// What the maps say of the place.
+LuthierPlace luthier_fill(uint material, vec2 uv, float far) {
+	LuthierPlace here = luthier_place();
+	here.slope_variance = luthier_slope_variance;
+	vec4 base = luthier_map_base;
+	int kind;
+	vec3 t;
+<before><texels><after>	return here;
+}
+
+// No normal is seen from behind.
+vec3 luthier_seen(vec3 normal, vec3 wo) {
+	return normalize(normal + max(0.02 - dot(normal, wo), 0.0) * wo);
+}
+
+void fragment() {
+	vec3 normal = luthier_seen(NORMAL, VIEW);
+	luthier_tangent = luthier_make_tangent(normal, TANGENT, BINORMAL, dFdx(VERTEX), dFdy(VERTEX), dFdx(UV), dFdy(UV));
+	LuthierPlace here = luthier_fill(uint(luthier_material), UV, length(VERTEX));
+<sent>}
+
+void light() {
+	LuthierPlace here;
+<received>	vec3 normal = luthier_seen(NORMAL, VIEW);
+	mat3 frame = mat3(luthier_tangent.xyz, cross(normal, luthier_tangent.xyz) * luthier_tangent.w, normal);
+	LuthierPrepared prepared = luthier_prepare_at(here, uint(luthier_material), VIEW * frame);
+	// The colour of a lamp has the factor pi that makes it an irradiance.
+	vec3 color = LIGHT_COLOR * ATTENUATION;
+	vec3 direction = LIGHT * frame;
+	SPECULAR_LIGHT += min(<lit>, vec3(65504.0));
+}
+"""
