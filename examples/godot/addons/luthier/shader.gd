@@ -27,15 +27,19 @@ static func text_of(glsl, surface, nearest, version):
 		for k in range(surface.lines.size()):
 			texels += "\tif (kind == %d) { %s }\n" % [k + 1, surface.lines[k]]
 	var numbers = _numbers("LuthierPlace", "here", _structures(glsl))
+	var varyings = ""
 	var sent = ""
 	var received = ""
-	for i in range(numbers.size()):
-		var number = "luthier_sent_%d.%s" % [i / 4, "xyzw"[i % 4]]
-		sent += "\t%s = %s;\n" % [number, numbers[i]]
-		received += "\t%s = %s;\n" % [numbers[i], number]
-	var varyings = ""
-	for i in range((numbers.size() + 3) / 4):
+	for i in range(0, numbers.size(), 4):
+		var four = ""
+		for k in range(4):
+			var is_there = i + k < numbers.size()
+			four += (", " if k else "") + (numbers[i + k] if is_there else "0.0")
+			if is_there:
+				received += "\t%s = received_%d.%s;\n" % [numbers[i + k], i, "xyzw"[k]]
 		varyings += "varying vec4 luthier_sent_%d;\n" % i
+		sent += "\tluthier_sent_%d = vec4(%s);\n" % [i, four]
+		received = "\tvec4 received_%d = luthier_sent_%d;\n" % [i, i] + received
 	var lit = "color * luthier_light(prepared, direction)"
 	if surface.has("luthier_light_lit"):
 		lit = "luthier_light_lit(prepared, direction, color)"
@@ -53,7 +57,8 @@ static func _declared(glsl, hints, nearest):
 		var name = found.get_string(1)
 		var hint = hints["words" if name in nearest else "table"]
 		glsl = glsl.replace(found.get_string(), "uniform sampler2D %s%s;" % [name, hint])
-	return glsl
+	# Godot 3.6 would write the first as a decrement.
+	return glsl.replace("- -", "+ ")
 
 
 # Members of each structure, with their types: [type, name, number of elements or 0].
