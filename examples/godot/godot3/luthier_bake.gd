@@ -51,8 +51,8 @@ func _make(number):
 	made.resource_name = entry.name
 	made.shader = shader
 	var base = _surface.base_of(entry)
-	made.set_shader_param("luthier_material", number)
-	made.set_shader_param("luthier_map_base", Plane(base[0], base[1], base[2], base[3]))
+	made.set_shader_param("host_material", number)
+	made.set_shader_param("host_base", Plane(base[0], base[1], base[2], base[3]))
 	for key in _tables:
 		made.set_shader_param(key, _tables[key])
 	var maps = _surface.maps_of(entry)
@@ -60,12 +60,12 @@ func _make(number):
 		if maps[i] == null:
 			continue
 		var rows = Surface.rows_of(entry, maps[i])
-		made.set_shader_param("luthier_map_%d" % i, _maps[maps[i].file.path])
-		made.set_shader_param("luthier_is_srgb_%d" % i, maps[i].get("srgb", false))
-		made.set_shader_param("luthier_kind_%d" % i, _surface.kind_of(maps[i]))
-		made.set_shader_param("luthier_factor_%d" % i, _vector(maps[i].get("factor", [1.0, 1.0, 1.0])))
-		made.set_shader_param("luthier_u_%d" % i, _vector(rows[0]))
-		made.set_shader_param("luthier_v_%d" % i, _vector(rows[1]))
+		made.set_shader_param("host_map_%d" % i, _maps[maps[i].file.path])
+		made.set_shader_param("host_is_srgb_%d" % i, maps[i].get("srgb", false))
+		made.set_shader_param("host_kind_%d" % i, _surface.kind_of(maps[i]))
+		made.set_shader_param("host_factor_%d" % i, _vector(maps[i].get("factor", [1.0, 1.0, 1.0])))
+		made.set_shader_param("host_u_%d" % i, _vector(rows[0]))
+		made.set_shader_param("host_v_%d" % i, _vector(rows[1]))
 	return made
 
 
@@ -111,7 +111,7 @@ func _open(folder):
 			texture.create_from_image(image, Texture.FLAG_REPEAT if map.slot == "flake-normal" else flags)
 			_maps[map.file.path] = texture
 	shader.code = Text.text_of(glsl, _surface, [], 3)
-	return ""
+	return "" if VisualServer.shader_get_param_list(shader.get_rid()) else "%s: Godot does not take the shader" % path
 
 
 static func _bytes(path):

@@ -23,7 +23,7 @@ func _draw(entry):
 		if bakes[entry.bake].open(entry.bake) != OK:
 			return
 	var material = bakes[entry.bake].material(entry.material)
-	material.set_shader_param("luthier_slope_variance", entry.slope_variance)
+	material.set_shader_param("host_slope_variance", entry.slope_variance)
 	var viewport = Viewport.new()
 	viewport.size = Vector2(entry.size, entry.size)
 	viewport.own_world = true

@@ -37,7 +37,7 @@ static func open(folder: String) -> LuthierBake:
 	return bake
 
 
-## A material by its name; null where there is none. It is one object: `duplicate()` it to change its parameters. `luthier_slope_variance` is the variance of
+## A material by its name; null where there is none. It is one object: `duplicate()` it to change its parameters. `host_slope_variance` is the variance of
 ## the slopes of the normals that a pixel sees, along either axis: it widens highlights, as the size of a lamp does.
 func material(name: String) -> ShaderMaterial:
 	if not name in names:
@@ -72,8 +72,8 @@ func _make(number: int) -> ShaderMaterial:
 	made.resource_name = entry.name
 	made.shader = shader
 	var base: Array = _surface.base_of(entry)
-	made.set_shader_parameter("luthier_material", number)
-	made.set_shader_parameter("luthier_map_base", Vector4(base[0], base[1], base[2], base[3]))
+	made.set_shader_parameter("host_material", number)
+	made.set_shader_parameter("host_base", Vector4(base[0], base[1], base[2], base[3]))
 	for key: String in _tables:
 		made.set_shader_parameter(key, _tables[key])
 	var maps: Array = _surface.maps_of(entry)
@@ -81,12 +81,12 @@ func _make(number: int) -> ShaderMaterial:
 		if maps[i] == null:
 			continue
 		var rows: Array = Surface.rows_of(entry, maps[i])
-		made.set_shader_parameter("luthier_map_%d" % i, _maps[maps[i].file.path])
-		made.set_shader_parameter("luthier_is_srgb_%d" % i, maps[i].get("srgb", false))
-		made.set_shader_parameter("luthier_kind_%d" % i, _surface.kind_of(maps[i]))
-		made.set_shader_parameter("luthier_factor_%d" % i, _vector(maps[i].get("factor", [1.0, 1.0, 1.0])))
-		made.set_shader_parameter("luthier_u_%d" % i, _vector(rows[0]))
-		made.set_shader_parameter("luthier_v_%d" % i, _vector(rows[1]))
+		made.set_shader_parameter("host_map_%d" % i, _maps[maps[i].file.path])
+		made.set_shader_parameter("host_is_srgb_%d" % i, maps[i].get("srgb", false))
+		made.set_shader_parameter("host_kind_%d" % i, _surface.kind_of(maps[i]))
+		made.set_shader_parameter("host_factor_%d" % i, _vector(maps[i].get("factor", [1.0, 1.0, 1.0])))
+		made.set_shader_parameter("host_u_%d" % i, _vector(rows[0]))
+		made.set_shader_parameter("host_v_%d" % i, _vector(rows[1]))
 	return made
 
 
@@ -131,7 +131,7 @@ func _open(folder: String) -> String:
 			image.generate_mipmaps()
 			_maps[map.file.path] = ImageTexture.create_from_image(image)
 	shader.code = Text.text_of(glsl, _surface, nearest, 4)
-	return ""
+	return "" if shader.get_shader_uniform_list() else "%s: Godot does not take the shader" % file
 
 
 static func _texture(texels: Array) -> ImageTexture:

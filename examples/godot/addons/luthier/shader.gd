@@ -1,6 +1,6 @@
 # The spatial shader of a bake: its text in GLSL ES 3.00, which Godot's language takes but for the declarations of textures, and the two functions that call
 # it. fragment() fills the place from the maps, light() asks for each lamp. Godot has no global variables, varyings are no structures, and few: the numbers of
-# the place go to light() four by four, and it prepares them for the eye. The same file serves Godot 3.6 and 4.
+# the place go to light() four by four, and it prepares them for the eye. Names of its own begin with host_. The same file serves Godot 3.6 and 4.
 
 # Words of a texture uniform in Godot 4, by how it is read. In 3.6 filters are flags of the texture.
 const HINTS_4 = {
@@ -18,12 +18,12 @@ static func text_of(glsl, surface, nearest, version):
 	var uniforms = ""
 	var texels = ""
 	for i in range(surface.reads.size()):
-		uniforms += "uniform sampler2D luthier_map_%d%s;\nuniform bool luthier_is_srgb_%d = false;\n" % [i, hints[surface.reads[i]], i]
-		uniforms += "uniform int luthier_kind_%d = 0;\nuniform vec3 luthier_factor_%d = vec3(1.0);\n" % [i, i]
-		uniforms += "uniform vec3 luthier_u_%d = vec3(1.0, 0.0, 0.0);\nuniform vec3 luthier_v_%d = vec3(0.0, 1.0, 0.0);\n" % [i, i]
-		texels += "\tkind = luthier_kind_%d;\n" % i
-		texels += "\tt = texture(luthier_map_%d, vec2(dot(luthier_u_%d, vec3(uv, 1.0)), dot(luthier_v_%d, vec3(uv, 1.0)))).rgb;\n" % [i, i, i]
-		texels += "\tt = luthier_factor_%d * (luthier_is_srgb_%d ? luthier_linear(t) : t);\n" % [i, i]
+		uniforms += "uniform sampler2D host_map_%d%s;\nuniform bool host_is_srgb_%d = false;\n" % [i, hints[surface.reads[i]], i]
+		uniforms += "uniform int host_kind_%d = 0;\nuniform vec3 host_factor_%d = vec3(1.0);\n" % [i, i]
+		uniforms += "uniform vec3 host_u_%d = vec3(1.0, 0.0, 0.0);\nuniform vec3 host_v_%d = vec3(0.0, 1.0, 0.0);\n" % [i, i]
+		texels += "\tkind = host_kind_%d;\n" % i
+		texels += "\tt = texture(host_map_%d, vec2(dot(host_u_%d, vec3(uv, 1.0)), dot(host_v_%d, vec3(uv, 1.0)))).rgb;\n" % [i, i, i]
+		texels += "\tt = host_factor_%d * (host_is_srgb_%d ? host_linear(t) : t);\n" % [i, i]
 		for k in range(surface.lines.size()):
 			texels += "\tif (kind == %d) { %s }\n" % [k + 1, surface.lines[k]]
 	var numbers = _numbers("LuthierPlace", "here", _structures(glsl))
@@ -37,9 +37,9 @@ static func text_of(glsl, surface, nearest, version):
 			four += (", " if k else "") + (numbers[i + k] if is_there else "0.0")
 			if is_there:
 				received += "\t%s = received_%d.%s;\n" % [numbers[i + k], i, "xyzw"[k]]
-		varyings += "varying vec4 luthier_sent_%d;\n" % i
-		sent += "\tluthier_sent_%d = vec4(%s);\n" % [i, four]
-		received = "\tvec4 received_%d = luthier_sent_%d;\n" % [i, i] + received
+		varyings += "varying vec4 host_sent_%d;\n" % i
+		sent += "\thost_sent_%d = vec4(%s);\n" % [i, four]
+		received = "\tvec4 received_%d = host_sent_%d;\n" % [i, i] + received
 	var lit = "color * luthier_light(prepared, direction)"
 	if surface.has("luthier_light_lit"):
 		lit = "luthier_light_lit(prepared, direction, color)"
@@ -100,69 +100,61 @@ const TEXT = """shader_type spatial;
 render_mode ambient_light_disabled;
 
 <glsl>
-uniform int luthier_material = 0;
-uniform float luthier_slope_variance = 0.0;
-uniform vec4 luthier_map_base = vec4(0.0, 0.0, 0.0, -1.0);
+uniform int host_material = 0;
+uniform float host_slope_variance = 0.0;
+uniform vec4 host_base = vec4(0.0, 0.0, 0.0, -1.0);
 <uniforms>
-varying vec4 luthier_tangent;
+varying vec4 host_tangent;
 <varyings>
-vec3 luthier_unit_normal(vec3 t) {
+vec3 host_unit_normal(vec3 t) {
 	vec3 n = 2.0 * t - 1.0;
 	return normalize(vec3(n.xy, max(n.z, 0.001)));
 }
 
 // Colours of a texture. By its own hint for them the renderer Compatibility leaves them as they are.
-vec3 luthier_linear(vec3 t) {
+vec3 host_linear(vec3 t) {
 	return mix(pow((t + 0.055) / 1.055, vec3(2.4)), t / 12.92, lessThanEqual(t, vec3(0.04045)));
 }
 
 // Slopes add up.
-vec3 luthier_lean(vec3 own, vec3 film) {
+vec3 host_lean(vec3 own, vec3 film) {
 	return normalize(vec3(film.xy * own.z + own.xy * film.z, film.z * own.z));
 }
 
-// Tangent, and side of the bitangent, which is against v. Without a tangent of the mesh it follows u.
-vec4 luthier_make_tangent(vec3 normal, vec3 given, vec3 given_across, vec3 p0, vec3 p1, vec2 t0, vec2 t1) {
-	vec3 e0 = cross(p1, normal);
-	vec3 e1 = cross(normal, p0);
-	float side = dot(p0, e0) < 0.0 ? -1.0 : 1.0;
-	vec3 along = side * (e0 * t0.x + e1 * t1.x);
-	float w = side * dot(cross(normal, along), e0 * t0.y + e1 * t1.y) > 0.0 ? -1.0 : 1.0;
-	if (dot(given, given) > 0.25) {
-		along = given;
-		w = dot(cross(normal, given), given_across) < 0.0 ? -1.0 : 1.0;
-	}
-	along -= normal * dot(normal, along);
+// Tangent, and side of the bitangent. A mesh without tangents gets some: Godot says nothing of it, and has no normal maps there either.
+vec4 host_make_tangent(vec3 normal, vec3 given, vec3 given_across) {
+	vec3 along = given - normal * dot(normal, given);
 	vec3 across = cross(normal, abs(normal.x) > 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0));
-	return vec4(normalize(dot(along, along) > 1e-30 ? along : across), w);
+	float side = dot(cross(normal, given), given_across) < 0.0 ? -1.0 : 1.0;
+	return vec4(normalize(dot(along, along) > 1e-6 ? along : across), side);
 }
 
 // What the maps say of the place.
-LuthierPlace luthier_fill(uint material, vec2 uv, float far) {
+LuthierPlace host_fill(uint material, vec2 uv, float far) {
 	LuthierPlace here = luthier_place();
-	here.slope_variance = luthier_slope_variance;
-	vec4 base = luthier_map_base;
+	here.slope_variance = host_slope_variance;
+	vec4 base = host_base;
 	int kind;
 	vec3 t;
 <before><texels><after>	return here;
 }
 
 // No normal is seen from behind.
-vec3 luthier_seen(vec3 normal, vec3 wo) {
+vec3 host_seen(vec3 normal, vec3 wo) {
 	return normalize(normal + max(0.02 - dot(normal, wo), 0.0) * wo);
 }
 
 void fragment() {
-	vec3 normal = luthier_seen(NORMAL, VIEW);
-	luthier_tangent = luthier_make_tangent(normal, TANGENT, BINORMAL, dFdx(VERTEX), dFdy(VERTEX), dFdx(UV), dFdy(UV));
-	LuthierPlace here = luthier_fill(uint(luthier_material), UV, length(VERTEX));
+	vec3 normal = host_seen(NORMAL, VIEW);
+	host_tangent = host_make_tangent(normal, TANGENT, BINORMAL);
+	LuthierPlace here = host_fill(uint(host_material), UV, length(VERTEX));
 <sent>}
 
 void light() {
 	LuthierPlace here;
-<received>	vec3 normal = luthier_seen(NORMAL, VIEW);
-	mat3 frame = mat3(luthier_tangent.xyz, cross(normal, luthier_tangent.xyz) * luthier_tangent.w, normal);
-	LuthierPrepared prepared = luthier_prepare_at(here, uint(luthier_material), VIEW * frame);
+<received>	vec3 normal = host_seen(NORMAL, VIEW);
+	mat3 frame = mat3(host_tangent.xyz, cross(normal, host_tangent.xyz) * host_tangent.w, normal);
+	LuthierPrepared prepared = luthier_prepare_at(here, uint(host_material), VIEW * frame);
 	// The colour of a lamp has the factor pi that makes it an irradiance.
 	vec3 color = LIGHT_COLOR * ATTENUATION;
 	vec3 direction = LIGHT * frame;

@@ -4,14 +4,14 @@
 # What the texel `t` of a map says of the place: the table in docs/manifest.md. Where a line needs a member of the place, of the place of a layer, or a
 # function, that is its second half; without it no model of the bake shows the quantity.
 const SLOTS = {
-	"normal": ["here.normal = luthier_unit_normal(t);", ""],
+	"normal": ["here.normal = host_unit_normal(t);", ""],
 	"roughness": ["here.alpha_factor = t.x * t.x;", ""],
 	"thickness": ["here.slab_factor = t.x;", ""],
 	"weight": ["here.weight_factor = t.x;", "weight_factor"],
 	"patina": ["here.patina = luthier_patina_amount(material, t.x);", "patina"],
 	"flake-normal": ["here.flake_normal = luthier_flake_tilt(material, 2.0 * t - 1.0, far);", "flake_normal"],
 	"albedo": ["here.base_color = t;", "base_color"],
-	"lean": ["here.inner_normal = luthier_lean(luthier_unit_normal(t), here.inner_normal);", "inner_normal"],
+	"lean": ["here.inner_normal = host_lean(host_unit_normal(t), here.inner_normal);", "inner_normal"],
 	"f0": ["here = luthier_f0_place(here, material, t);", "luthier_f0_place"],
 	# They take effect together, in the end.
 	"base-color": ["base = vec4(t, base.w);", "luthier_metallic_place"],
@@ -20,7 +20,7 @@ const SLOTS = {
 const LAYER_SLOTS = {
 	"thickness": ["here.layers[%d].slab_factor = t.x;", "slab_factor"],
 	"absorption": ["here.layers[%d].absorption_factors = t;", "absorption_factors"],
-	"bumps": ["here.layers[%d].normal = luthier_unit_normal(t);", "normal"],
+	"bumps": ["here.layers[%d].normal = host_unit_normal(t);", "normal"],
 	"alpha": ["here.layers[%d].alpha_factors *= t.x;", "alpha_factors"],
 	"alpha-x": ["here.layers[%d].alpha_factors.x *= t.x;", "alpha_factors"],
 	"alpha-y": ["here.layers[%d].alpha_factors.y *= t.x;", "alpha_factors"],
