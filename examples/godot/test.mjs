@@ -1,4 +1,5 @@
-// Tests of the addon in Godot 4 (its three renderers) and, where there is one, in Godot 3.6: node test.mjs OUT. Pictures are left in OUT.
+// Tests of the addon in Godot 4 (its three renderers) and, where there is one, in Godot 3.6: node test.mjs OUT [RENDERER...], of
+// forward, mobile, compatibility and godot3. Pictures are left in OUT.
 // - Balls against `luthier preview`: plain and textured materials under a lamp far away, near a lamp, and under two lamps.
 // - Lamps with shadows, against sums of single ones.
 // - Materials saved as resources draw the same picture.
@@ -7,7 +8,7 @@
 // xvfb-run, and OpenGL and Vulkan drivers.
 
 import { execFile } from "node:child_process";
-import { cp, mkdir, readFile, rm, writeFile } from "node:fs/promises";
+import { cp, mkdir, readFile, rm, truncate, writeFile } from "node:fs/promises";
 import path from "node:path";
 import { promisify } from "node:util";
 import { crc32, deflateSync } from "node:zlib";
@@ -32,12 +33,14 @@ const check = (holds, words) => {
 };
 
 const { GODOT = "godot", GODOT3 } = process.env;
-const RENDERERS = {
+const ALL = {
   "Godot 4 Forward+": { name: "forward", program: GODOT, options: ["--rendering-method", "forward_plus"], project: path.join(out, "project") },
   "Godot 4 Mobile": { name: "mobile", program: GODOT, options: ["--rendering-method", "mobile"], project: path.join(out, "project") },
   "Godot 4 Compatibility": { name: "compatibility", program: GODOT, options: ["--rendering-method", "gl_compatibility"], project: path.join(out, "project") },
   ...(GODOT3 && { "Godot 3.6": { name: "godot3", program: GODOT3, options: ["--video-driver", "GLES3"], project: path.join(out, "project3") } }),
 };
+const wanted = process.argv.slice(3);
+const RENDERERS = Object.fromEntries(Object.entries(ALL).filter(([, { name }]) => !wanted.length || wanted.includes(name)));
 
 /** Copies of this folder as a project for either version: Godot writes into the folder of a project. */
 async function projects() {
@@ -185,34 +188,44 @@ async function balls(renderer, all) {
 }
 
 /** Bakes that the addon refuses, and a word of the reason. */
-async function refusals(renderer) {
-  const bake = path.join(out, "refused");
-  const gold = ["bake", "materials/polished-gold.toml", "--no-fit", "--quiet", "--out", bake];
-  const refused = async (word, change = (manifest) => manifest) => {
+async function wrong() {
+  const all = [];
+  const add = async (word, options, change) => {
+    const bake = path.join(out, `wrong-${all.length}`);
+    await rm(bake, { recursive: true, force: true });
+    await luthier("bake", "materials/polished-gold.toml", "--no-fit", "--quiet", "--out", bake, ...options);
+    await change?.(bake);
+    all.push([word, bake]);
+  };
+  const manifest = (change) => async (bake) => {
     const file = path.join(bake, "manifest.json");
     await writeFile(file, change(await readFile(file, "utf8")));
-    const said = await draw(renderer, [{ ...BALL, bake, material: "polished-gold", lights: [], picture: path.join(out, "refused.png"), hdr: false }]);
-    const [, reason = said] = said.match(/ERROR: (.*)/) ?? [];
-    check(reason.includes(word) && reason.includes(bake), `a bake is refused by ${renderer}: ${reason}`);
   };
-  await luthier(...gold);
-  await refused("--functions surface");
-  await luthier(...gold, "--target", "wgsl", "--functions", "surface");
-  await refused("--target glsl-es300");
-  await luthier(...gold, "--functions", "surface", "--prefix", "gold");
-  await refused("without --prefix");
-  await refused("schema 5", (manifest) => manifest.replace('"schema": 4', '"schema": 5'));
-  await refused("no JSON", (manifest) => manifest.slice(1));
-  await rm(path.join(bake, "manifest.json"));
-  await luthier(...gold, "--functions", "surface");
-  await rm(path.join(bake, "tables"), { recursive: true });
-  await refused("no KTX2 file");
+  const surface = ["--functions", "surface"];
+  await add("--functions surface", []);
+  await add("--target glsl-es300", ["--target", "wgsl", ...surface]);
+  await add("without --prefix", ["--prefix", "gold", ...surface]);
+  await add("schema 5", surface, manifest((text) => text.replace('"schema": 4', '"schema": 5')));
+  await add("no JSON", surface, manifest((text) => text.slice(1)));
+  await add("no whole KTX2 file", surface, (bake) => truncate(path.join(bake, "tables/fresnel.ktx2"), 120));
+  await add("not the size", surface, (bake) => truncate(path.join(bake, "materials.bin"), 16));
+  await add("no manifest.json", surface, (bake) => rm(path.join(bake, "manifest.json")));
+  return all;
+}
+
+async function refusals(renderer, all) {
+  const said = await draw(renderer, all.map(([, bake]) => ({ ...BALL, bake, material: "polished-gold", lights: [], picture: path.join(out, "wrong.png"), hdr: false })));
+  for (const [word, bake] of all) {
+    const reason = said.split("\n").find((line) => line.includes("ERROR: ") && line.includes(bake)) ?? "nothing";
+    check(reason.includes(word), `a bake is refused by ${renderer}: ${reason.replace(/.*ERROR: /, "")}`);
+  }
 }
 
 await projects();
 const all = await cases();
 for (const renderer of Object.keys(RENDERERS)) await balls(renderer, all);
-for (const renderer of Object.keys(RENDERERS).filter((name) => /Compatibility|3.6/.test(name))) await refusals(renderer);
+const faulty = await wrong();
+for (const renderer of Object.keys(RENDERERS).filter((name) => /Compatibility|3.6/.test(name))) await refusals(renderer, faulty);
 if (failures.length) {
   console.error(`${failures.length} failed:\n${failures.join("\n")}`);
   process.exit(1);

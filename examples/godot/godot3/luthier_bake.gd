@@ -95,10 +95,12 @@ func _open(folder):
 	for table in manifest.tables:
 		var texels = Ktx2.read(_bytes(folder.plus_file(table.texture.path)), table.format)
 		if texels == null:
-			return "%s is no KTX2 file: bake again" % folder.plus_file(table.texture.path)
+			return "%s is no whole KTX2 file: bake again" % folder.plus_file(table.texture.path)
 		_tables["luthier_" + table.kind] = _texture(texels, 0 if table.format.ends_with("32float") else Texture.FLAG_FILTER)
 	var size = manifest.material_texture
 	var words = _bytes(folder.plus_file(manifest.material_buffer.path))
+	if words.size() != 16 * size.width * size.height:
+		return "%s has not the size that the manifest says: bake again" % folder.plus_file(manifest.material_buffer.path)
 	_tables["luthier_materials"] = _texture([size.width, size.height, Image.FORMAT_RGBAF, words], 0)
 	for entry in manifest.materials:
 		names.append(entry.name)

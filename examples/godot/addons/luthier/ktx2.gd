@@ -17,7 +17,7 @@ const FORMATS = {
 }
 
 
-# Width, height, format and texels of the first level of a file; null where the file is none.
+# Width, height, format and texels of the first level of a file; null where the file is none, or is cut.
 static func read(bytes, format):
 	var file = StreamPeerBuffer.new()
 	file.data_array = bytes
@@ -33,6 +33,8 @@ static func read(bytes, format):
 	var texels = file.get_data(length)[1]
 	if is_compressed:
 		texels = texels.decompress(whole, ZSTD)
+	if texels.size() != whole:
+		return null
 	if format in ["rgb10a2unorm", "rg11b10ufloat"]:
 		texels = _halves(texels, format)
 	return [width, height, FORMATS[format], texels]

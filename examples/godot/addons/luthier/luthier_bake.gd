@@ -116,12 +116,15 @@ func _open(folder: String) -> String:
 	for table: Dictionary in manifest.tables:
 		var texels = Ktx2.read(FileAccess.get_file_as_bytes(folder.path_join(table.texture.path)), table.format)
 		if texels == null:
-			return "%s is no KTX2 file: bake again" % folder.path_join(table.texture.path)
+			return "%s is no whole KTX2 file: bake again" % folder.path_join(table.texture.path)
 		_tables["luthier_" + table.kind] = _texture(texels)
 		if table.format.ends_with("32float"):
 			nearest.append("luthier_" + table.kind)
+	var size: Dictionary = manifest.material_texture
 	var words := FileAccess.get_file_as_bytes(folder.path_join(manifest.material_buffer.path))
-	_tables["luthier_materials"] = _texture([manifest.material_texture.width, manifest.material_texture.height, Image.FORMAT_RGBAF, words])
+	if words.size() != 16 * size.width * size.height:
+		return "%s has not the size that the manifest says: bake again" % folder.path_join(manifest.material_buffer.path)
+	_tables["luthier_materials"] = _texture([size.width, size.height, Image.FORMAT_RGBAF, words])
 	for entry: Dictionary in manifest.materials:
 		names.append(entry.name)
 		for map: Dictionary in entry.maps:
