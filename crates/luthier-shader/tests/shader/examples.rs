@@ -21,8 +21,8 @@ const TEMPLATE: &str = "/* glsl */ `";
 const PASTE: &str = "${glsl}";
 
 /// Folders of `examples/` without a shader of their own, or with shaders that scripts of their own compile and run in the host.
-const OTHERS: [&str; 10] =
-    ["farm", "mitsuba", "c", "shaders", "three", "bevy", "web", "babylon", "playcanvas", "materialx"];
+const OTHERS: [&str; 11] =
+    ["farm", "mitsuba", "c", "shaders", "three", "bevy", "web", "babylon", "playcanvas", "materialx", "godot"];
 
 /// The shaders that call `luthier_eval`, of every folder of `examples/` with a renderer.
 fn shaders() -> Vec<Shader> {
