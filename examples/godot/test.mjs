@@ -12,7 +12,7 @@ import { cp, mkdir, readFile, rm, truncate, writeFile } from "node:fs/promises";
 import path from "node:path";
 import { promisify } from "node:util";
 import { crc32, deflateSync } from "node:zlib";
-import { difference } from "../three/difference.mjs";
+import { difference } from "../web/difference.mjs";
 
 const here = import.meta.dirname;
 const root = path.join(here, "../..");
