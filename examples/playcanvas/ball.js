@@ -2,9 +2,9 @@
 
 import * as pc from "playcanvas";
 import { loadBake, loadEnvironment } from "luthier-playcanvas";
-import { add, driver, exposure, mesh, open, png, run } from "./page.js";
+import { add, driver, mesh, open, run, show } from "./page.js";
 
-run(async ({ device: kind, size, material, lights, ambient, background, fov_y_deg, eye_distance, slope_variance: slopeVariance, environment, tone, tangents }) => {
+run(async ({ device: kind = "webgl2", size, material, lights, ambient, background, fov_y_deg, eye_distance, slope_variance: slopeVariance, environment, tone, tangents }) => {
   const app = await open(kind, size);
   const device = app.graphicsDevice;
   const bake = await loadBake(device, "bake/manifest.json");
@@ -14,8 +14,7 @@ run(async ({ device: kind, size, material, lights, ambient, background, fov_y_de
   for (const light of lights) lamp(app, light);
   const clearColor = new pc.Color(...background).gamma();
   const camera = add(app, "camera", { clearColor, fov: fov_y_deg, nearClip: 0.1, farClip: 100, toneMapping: pc[tone ?? "TONEMAP_NONE"], gammaCorrection: pc.GAMMA_SRGB }, [0, 0, eye_distance]);
-  const pixels = await exposure(app, camera, size, pc.PIXELFORMAT_SRGBA8)();
-  return { picture: png(pixels), driver: driver(app) };
+  return { picture: await show(app, camera, size), driver: driver(app) };
 });
 
 /** A light far away, or at a position, whose irradiance is that at the centre. A colour of 1 is an irradiance of pi. */
@@ -39,6 +38,9 @@ function inverseSquare(device) {
 }
 
 /** A ball whose texture coordinates begin at the top, behind: those of `luthier preview --shape sphere`. */
-function ball(calculateTangents) {
-  return new pc.SphereGeometry({ radius: 1, latitudeBands: 64, longitudeBands: 128, calculateTangents });
+function ball(hasTangents) {
+  const geometry = new pc.SphereGeometry({ radius: 1, latitudeBands: 64, longitudeBands: 128, calculateTangents: hasTangents });
+  // glTF files have the bitangent against v, the engine's geometries along it.
+  geometry.tangents = geometry.tangents?.map((value, i) => (i % 4 === 3 ? -value : value));
+  return geometry;
 }

