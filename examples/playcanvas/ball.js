@@ -23,7 +23,7 @@ function lamp(app, { direction, position, irradiance }) {
   if (position) {
     inverseSquare(app.graphicsDevice);
     const squared = position.reduce((sum, x) => sum + x * x, 0);
-    add(app, "light", { type: "omni", color: color(squared / 16), range: 1e4 }, position);
+    add(app, "light", { type: "omni", color: color(squared / 16), falloffMode: pc.LIGHTFALLOFF_INVERSESQUARED, range: 1e4 }, position);
     return;
   }
   // Light shines down the -y of its entity.

@@ -57,9 +57,10 @@ async function lights(app, bake, { material, floor, clustered }) {
   }
   const colors = (fold) => all.reduce((most, value, i) => (i % 4 < 3 ? Math.max(most, fold(value, i)) : most), 0);
   figures.sum_off = colors((value, i) => Math.abs(value - kinds.reduce((sum, kind) => sum + alone[kind][i], 0))) / colors((value) => value);
-  // Within the cone a spot is a lamp without one.
+  // Within the cone, without its rim, a spot is a lamp without one.
   const [spot, bare] = [await lit(["spot"], 0), await lit(["bare"], 0)];
-  figures.spot_off = colors((_, i) => (spot[i] > 0 ? Math.abs(spot[i] - bare[i]) / bare[i] : 0));
+  const within = spot.map((value, i) => Math.abs(value - bare[i]) / bare[i]).filter((_, i) => i % 4 === 0 && spot[i] > 0).sort();
+  figures.spot_off = within[Math.floor(0.95 * within.length)];
   figures.outside_of_cone = count(bare, (_, i) => bare[i] > 1e-3 && spot[i] === 0);
   figures.programs = programs(app);
   // Thick fog is all that is seen; it needs another program.

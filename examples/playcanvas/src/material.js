@@ -1,6 +1,6 @@
 // A material of a bake: PlayCanvas' lit material with another front end, and other light of its lamps.
 
-import { LitMaterial, SHADERDEF_UV0, SHADERLANGUAGE_GLSL, SHADERLANGUAGE_WGSL, ShaderChunks } from "playcanvas";
+import { FRESNEL_NONE, LitMaterial, SHADERDEF_UV0, SHADERLANGUAGE_GLSL, SHADERLANGUAGE_WGSL, ShaderChunks } from "playcanvas";
 import { mapKey } from "luthier-web";
 import * as glsl from "./glsl.js";
 import * as wgsl from "./wgsl.js";
@@ -22,7 +22,7 @@ export class LuthierMaterial extends LitMaterial {
     const chunks = this.getShaderChunks(textOf(bake).language);
     for (const [chunk, text] of Object.entries(textOf(bake).chunks)) chunks.set(chunk, text);
     // All light is that of lamps, ambient light, and cubes of luthier; the tangents of a geometry come with GGX.
-    Object.assign(this, { useSkybox: false, hasSpecular: true, ggxSpecular: true, fresnelModel: 0 });
+    Object.assign(this, { useSkybox: false, hasSpecular: true, ggxSpecular: true, fresnelModel: FRESNEL_NONE });
 
     this.#values = valuesOf(bake, number, entry);
     this.setParameter("luthier_values[0]", this.#values);

@@ -44,6 +44,8 @@ export async function cubeTexture(device, name, file) {
     const length = texels.length / 6;
     return Array.from({ length: 6 }, (_, face) => texels.slice(face * length, (face + 1) * length));
   });
+  // PlayCanvas wants levels down to one texel. The shader reads none beyond those of the file.
+  for (let size = width >> faces.length; faces.length > 1 && size > 0; size >>= 1) faces.push(faces.at(-1).map((texels) => texels.slice(0, 4 * size * size)));
   return cube(device, name, width, height, faces);
 }
 
