@@ -1,7 +1,7 @@
 // Tests of luthier-playcanvas in Chromium with the software driver, on the devices of WebGL 2 and WebGPU: node test.mjs OUT. Pictures are left in OUT.
 // - Balls against `luthier preview`: plain and textured materials under one lamp, near a lamp, in an environment and in even light. A tone curve.
 // - Chalk against PlayCanvas' own white: the units of lamps and of ambient light.
-// - Three kinds of lamps with shadows, clustered and not, against sums of single ones. Fog.
+// - Three kinds of lamps with shadows, in clusters and, in WebGL, without, against sums of single ones. Fog.
 // - Sixty materials, five of them with textures: one program.
 // - Wrong bakes are named.
 // Needs a Vulkan driver and `npm ci` in this folder. The environment variable LUTHIER names the program that bakes; by default cargo builds it. CHROMIUM
@@ -123,7 +123,8 @@ async function units() {
 
 async function lamps(bake) {
   for (const device of DEVICES) {
-    for (const clustered of [true, false]) {
+    // WebGPU has clusters alone.
+    for (const clustered of device === "webgpu" ? [true] : [true, false]) {
       const by = clustered ? `${device} in clusters` : device;
       const { lit, shadowed, sum_off, spot_off, outside_of_cone, programs, fog_off } = JSON.parse(
         await page("test.html", bake, { device, scene: "lights", material: "red-lacquer", floor: "red-lacquer", clustered }, `lights-${device}-${clustered}`),
