@@ -3,7 +3,7 @@
 import { glslAround } from "luthier-web";
 
 /** The front end of a bake: what is known before the loop over the lights begins. It is the same for all materials of the bake. */
-export function frontEnd(bake) {
+function frontEnd(bake) {
   const { text, surface } = bake;
   const at = (i, vector) => `luthier_values[${2 + 3 * i + vector}]`;
   const names = {
@@ -14,7 +14,6 @@ export function frontEnd(bake) {
   };
   const maps = Array.from({ length: surface.width }, (_, i) => `uniform sampler2D luthier_map_${i};`).join("\n");
   return /* glsl */ `
-#include "litShaderArgsPS"
 #ifdef FORWARD_PASS
 ${text}
 // Material, variance of slopes, and whether there is light from all around; the base; and of each map its rows, kind and factor.
@@ -44,6 +43,7 @@ void evaluateFrontend() {
   luthier_fill(material, uv, distance(view_position, vPositionW), luthier_values[0].y);
   luthier_prepared = luthier_prepare_at(luthier_here, material, dViewDirW * luthier_frame);
   litArgs_worldNormal = normal;
+  litArgs_ao = 1.0;
   litArgs_specularity = vec3(1.0);
   #endif
 }
@@ -51,10 +51,12 @@ void evaluateFrontend() {
 }
 
 /** Chunks in place of those of the engine, by their names. `engine` has the engine's. */
-export function chunks({ functions }, engine) {
-  const has = (name) => functions.includes(name);
+export function chunks(bake, engine) {
+  const has = (name) => bake.functions.includes(name);
   const lit = (color) => `${Math.PI} * luthier_lit(${color}, -lightDirNorm)`;
   return {
+    stdDeclarationPS: '#include "litShaderArgsPS"\n',
+    stdFrontEndPS: frontEnd(bake),
     // The factor of a light, and of its colour. A fluorescent base has a matrix in its place.
     lightSpecularGGXPS: has("luthier_light_lit")
       ? `mat3 getLightSpecular(vec3 h, vec3 reflDir, vec3 worldNormal, vec3 viewDir, vec3 lightDirNorm, float gloss, mat3 tbn) {
@@ -65,15 +67,16 @@ export function chunks({ functions }, engine) {
   return ${lit("vec3(1.0)")};
 }
 `,
-    // The cosine is in the factor.
+    // The cosine and Fresnel's share are in the factor.
+    fresnelSchlickPS: "vec3 getFresnel(float cosTheta, float gloss, vec3 specularity) { return vec3(1.0); }\n",
     lightDiffuseLambertPS: "float getLightDiffuse(vec3 worldNormal, vec3 viewDir, vec3 lightDirNorm) { return 1.0; }\n",
     // Lights with an area have no light on these materials.
     ltcPS: engine.get("ltcPS").replace(/dLTCSpecFres = [^;]+;/, "dLTCSpecFres = vec3(0.0);"),
     ambientPS: engine.get("ambientPS").replaceAll("dDiffuseLight", "luthier_even"),
     combinePS: `vec3 combineColor(vec3 albedo, vec3 sheenSpecularity, float clearcoatSpecularity) {
   vec3 sum = dSpecularLight;
-  ${has("luthier_albedo") ? `sum += luthier_ambient(${Math.PI} * luthier_even);` : ""}
-  ${has("luthier_environment") ? "if (luthier_values[0].z > 0.0) sum += luthier_environment(luthier_prepared, luthier_frame, 0.0);" : ""}
+  ${has("luthier_albedo") ? `sum += litArgs_ao * luthier_ambient(${Math.PI} * luthier_even);` : ""}
+  ${has("luthier_environment") ? "if (luthier_values[0].z > 0.0) sum += litArgs_ao * luthier_environment(luthier_prepared, luthier_frame, 0.0);" : ""}
   return luthier_bounded(sum);
 }
 `,

@@ -1,4 +1,4 @@
-import { AppBase, GraphicsDevice, LitMaterial, ResourceHandler, StorageBuffer, Texture } from "playcanvas";
+import { AppBase, GraphicsDevice, ResourceHandler, StandardMaterial, StorageBuffer, Texture } from "playcanvas";
 import { Bake, LuthierManifest, LuthierManifestMaterial } from "luthier-web";
 
 export { LuthierManifest, LuthierManifestMaterial };
@@ -15,7 +15,7 @@ export interface LuthierParameters {
 }
 
 /** A material of a bake, under the lights, shadows, fog and tone curve of PlayCanvas. */
-export class LuthierMaterial extends LitMaterial {
+export class LuthierMaterial extends StandardMaterial {
   constructor(bake: LuthierBake, name: string, options?: LuthierParameters);
   readonly isLuthierMaterial: true;
   slopeVariance: number;

@@ -1,14 +1,11 @@
-// A material of a bake: PlayCanvas' lit material with another front end, and other light of its lamps.
+// A material of a bake: PlayCanvas' standard material with another front end, and other light of its lamps.
 
-import { FRESNEL_NONE, LitMaterial, SHADERDEF_UV0, SHADERLANGUAGE_GLSL, SHADERLANGUAGE_WGSL, ShaderChunks } from "playcanvas";
+import { SHADERLANGUAGE_GLSL, SHADERLANGUAGE_WGSL, ShaderChunks, SPECOCC_NONE, StandardMaterial } from "playcanvas";
 import { mapKey } from "luthier-web";
 import * as glsl from "./glsl.js";
 import * as wgsl from "./wgsl.js";
 
-/** What `Material.copy` of PlayCanvas leaves out. */
-const SETTINGS = ["useLighting", "useFog", "useTonemap", "twoSidedLighting"];
-
-export class LuthierMaterial extends LitMaterial {
+export class LuthierMaterial extends StandardMaterial {
   #bake;
   #values;
 
@@ -17,12 +14,11 @@ export class LuthierMaterial extends LitMaterial {
     const { number, entry } = bake.find(name);
     this.name = name;
     this.#bake = bake;
-    Object.assign(this, textOf(bake).front);
     this.shaderChunksVersion = "2.23";
     const chunks = this.getShaderChunks(textOf(bake).language);
     for (const [chunk, text] of Object.entries(textOf(bake).chunks)) chunks.set(chunk, text);
-    // All light is that of lamps, ambient light, and cubes of luthier; the tangents of a geometry come with GGX.
-    Object.assign(this, { useSkybox: false, hasSpecular: true, ggxSpecular: true, fresnelModel: FRESNEL_NONE });
+    // The tangents of a geometry come with GGX, and its texture coordinates with a map.
+    Object.assign(this, { enableGGXSpecular: true, diffuseMap: bake.white, useSkybox: false, occludeSpecular: SPECOCC_NONE });
 
     this.#values = valuesOf(bake, number, entry);
     this.setParameter("luthier_values[0]", this.#values);
@@ -43,7 +39,6 @@ export class LuthierMaterial extends LitMaterial {
   /** Takes the settings of another material of the bake. */
   copy(source) {
     super.copy(source);
-    for (const setting of SETTINGS) this[setting] = source[setting];
     this.#values.set(source.#values);
     this.setParameter("luthier_values[0]", this.#values);
     return this;
@@ -52,12 +47,6 @@ export class LuthierMaterial extends LitMaterial {
   destroy() {
     this.#bake.materials.delete(this);
     super.destroy();
-  }
-
-  /** Texture coordinates where the geometry has some. */
-  getShaderVariant(params) {
-    this.usedUvs = [Boolean(params.objDefs & SHADERDEF_UV0)];
-    return super.getShaderVariant(params);
   }
 
   get isLuthierMaterial() {
@@ -94,14 +83,13 @@ function valuesOf({ surface }, number, entry) {
 
 const texts = new WeakMap();
 
-/** The front end and the chunks of a bake, the same for all its materials. */
+/** The chunks of a bake, the same for all its materials. */
 function textOf(bake) {
   if (!texts.has(bake)) {
     const { isWebGPU } = bake.device;
     const language = isWebGPU ? SHADERLANGUAGE_WGSL : SHADERLANGUAGE_GLSL;
-    const { frontEnd, chunks } = isWebGPU ? wgsl : glsl;
-    const front = { [isWebGPU ? "shaderChunkWGSL" : "shaderChunkGLSL"]: frontEnd(bake) };
-    texts.set(bake, { language, front, chunks: chunks(bake, ShaderChunks.get(bake.device, language)) });
+    const { chunks } = isWebGPU ? wgsl : glsl;
+    texts.set(bake, { language, chunks: chunks(bake, ShaderChunks.get(bake.device, language)) });
   }
   return texts.get(bake);
 }

@@ -5,7 +5,7 @@ import { fill, wgslAround, withOwnSamplers } from "luthier-web";
 const sampler = (texture) => `${texture}Sampler`;
 
 /** The front end of a bake: what is known before the loop over the lights begins. It is the same for all materials of the bake. */
-export function frontEnd(bake) {
+function frontEnd(bake) {
   const { surface } = bake;
   const text = withOwnSamplers(bake.text, sampler);
   const at = (i, vector) => `uniform.luthier_values[${2 + 3 * i + vector}]`;
@@ -26,7 +26,6 @@ export function frontEnd(bake) {
     ...cubes.map((name) => texture(name, "texture_cube")),
   ];
   return /* wgsl */ `
-#include "litShaderArgsPS"
 #ifdef FORWARD_PASS
 // Material, variance of slopes, and whether there is light from all around; the base; and of each map its rows, kind and factor.
 uniform luthier_values: array<vec4f, ${2 + 3 * surface.width}>;
@@ -59,6 +58,7 @@ fn evaluateFrontend() {
   ${fill(surface, names)}
   luthier_prepared = luthier_prepare_at(luthier_here, material, dViewDirW * luthier_frame);
   litArgs_worldNormal = normal;
+  litArgs_ao = 1.0;
   litArgs_specularity = vec3f(1.0);
   #endif
 }
@@ -66,10 +66,12 @@ fn evaluateFrontend() {
 }
 
 /** Chunks in place of those of the engine, by their names. `engine` has the engine's. */
-export function chunks({ functions }, engine) {
-  const has = (name) => functions.includes(name);
+export function chunks(bake, engine) {
+  const has = (name) => bake.functions.includes(name);
   const lit = (color) => `${Math.PI} * luthier_lit(${color}, -lightDirNorm)`;
   return {
+    stdDeclarationPS: '#include "litShaderArgsPS"\n',
+    stdFrontEndPS: frontEnd(bake),
     // The factor of a light, and of its colour. A fluorescent base has a matrix in its place.
     lightSpecularGGXPS: has("luthier_light_lit")
       ? `fn getLightSpecular(h: vec3f, reflDir: vec3f, worldNormal: vec3f, viewDir: vec3f, lightDirNorm: vec3f, gloss: f32, tbn: mat3x3f) -> mat3x3f {
@@ -80,15 +82,16 @@ export function chunks({ functions }, engine) {
   return ${lit("vec3f(1.0)")};
 }
 `,
-    // The cosine is in the factor.
+    // The cosine and Fresnel's share are in the factor.
+    fresnelSchlickPS: "fn getFresnel(cosTheta: f32, gloss: f32, specularity: vec3f) -> vec3f { return vec3f(1.0); }\n",
     lightDiffuseLambertPS: "fn getLightDiffuse(worldNormal: vec3f, viewDir: vec3f, lightDirNorm: vec3f) -> f32 { return 1.0; }\n",
     // Lights with an area have no light on these materials.
     ltcPS: engine.get("ltcPS").replace(/dLTCSpecFres = [^;]+;/, "dLTCSpecFres = vec3f(0.0);"),
     ambientPS: engine.get("ambientPS").replaceAll("dDiffuseLight", "luthier_even"),
     combinePS: `fn combineColor(albedo: vec3f, sheenSpecularity: vec3f, clearcoatSpecularity: f32) -> vec3f {
   var sum = dSpecularLight;
-  ${has("luthier_albedo") ? `sum += luthier_ambient(${Math.PI} * luthier_even);` : ""}
-  ${has("luthier_environment") ? "if (uniform.luthier_values[0].z > 0.0) { sum += luthier_environment(luthier_prepared, luthier_frame, 0.0); }" : ""}
+  ${has("luthier_albedo") ? `sum += litArgs_ao * luthier_ambient(${Math.PI} * luthier_even);` : ""}
+  ${has("luthier_environment") ? "if (uniform.luthier_values[0].z > 0.0) { sum += litArgs_ao * luthier_environment(luthier_prepared, luthier_frame, 0.0); }" : ""}
   return luthier_bounded(sum);
 }
 `,
