@@ -1,7 +1,7 @@
 // Scenes of test.mjs. They are drawn into textures of linear 32-bit floats, so that figures are of light.
 
 import * as pc from "playcanvas";
-import { loadBake } from "luthier-playcanvas";
+import { LuthierHandler } from "luthier-playcanvas";
 import { add, driver, exposure, mesh, open, png, run } from "./page.js";
 
 const SIZE = 256;
@@ -9,10 +9,22 @@ const SCENES = { lights, units, set };
 
 run(async ({ device: kind, scene, ...rest }) => {
   const app = await open(kind, rest.size ?? SIZE);
-  const bake = await loadBake(app.graphicsDevice, "bake/manifest.json");
+  const bake = await asset(app, "bake/manifest.json");
   const { pixels, figures } = await SCENES[scene](app, bake, rest);
   return { picture: png(toned(pixels)), figures, driver: driver(app) };
 });
+
+/** A bake that is an asset. */
+function asset(app, url) {
+  app.loader.addHandler("luthier", new LuthierHandler(app));
+  const asset = new pc.Asset("bake", "luthier", { url });
+  app.assets.add(asset);
+  return new Promise((resolve, reject) => {
+    asset.once("error", reject);
+    asset.ready(({ resource }) => resolve(resource));
+    app.assets.load(asset);
+  });
+}
 
 const LINEAR = { toneMapping: pc.TONEMAP_NONE, gammaCorrection: pc.GAMMA_NONE, clearColor: pc.Color.BLACK };
 
