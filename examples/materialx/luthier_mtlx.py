@@ -213,7 +213,7 @@ def main():
     try:
         library = Library(Bake(given.bake))
     except tables.Unreadable as reason:
-        sys.exit(f"error: {reason}")
+        sys.exit(f"error: {reason}" if given.bake in str(reason) else f"error: {given.bake}: {reason}")
     library.write(given.out)
     print(f"{given.out / 'materials.mtlx'}: {len(library.places)} materials")
 

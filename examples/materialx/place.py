@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from tables import Unreadable
+
 
 @dataclass
 class Input:
@@ -88,7 +90,7 @@ class Place:
             self.inputs.append(Input("normal", "vector3", None, "", record))
             return []
         if slot not in SLOTS:
-            raise ValueError(f"{self.entry['name']} has a map of {slot}, which this version does not know")
+            raise Unreadable(f"{self.entry['name']} has a map of {slot}, which this program does not know: use luthier of its version, and bake anew")
         kind, default, whole, own, doc = SLOTS[slot]
         of_layer = own and (layer or not whole)
         need = NEEDS.get(slot, "slab_factor" if of_layer else None)

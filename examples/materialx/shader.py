@@ -225,7 +225,7 @@ class Text:
             elif match := re.match(r"\w+ (\w+)\(", line):
                 self.functions[match[1]] = part
             elif not line.startswith("uniform "):
-                raise Unreadable(f"the shader has a line that this version does not know: {line}")
+                raise Unreadable(f"the shader has a line that this program does not know, {line}: use luthier of its version, and bake anew")
 
     def members(self, name):
         """Type, name and, of arrays, length of the members of a structure."""
@@ -301,7 +301,7 @@ class Text:
             body = rewrite(body, rf"\b({names})\(", lambda match, given: f"{match[1]}({', '.join([ARGUMENT, *given])})")
         text = MATH.sub(r"mx_\1(", f"{head}\n{body}")
         if found := FOREIGN.search(text):
-            raise Unreadable(f"the shader has {found[0]}, which MaterialX does not translate: {head}")
+            raise Unreadable(f"the shader has {found[0]}, which MaterialX does not translate, in {head}: bake other materials anew without this one")
         return text
 
     def made(self, match, given):
@@ -309,7 +309,7 @@ class Text:
         if all(ZERO.fullmatch(value) for value in given):
             return f"{match[1]}_zero()"
         if match[2]:
-            raise Unreadable(f"the shader has an array of {match[1]} that is not zero")
+            raise Unreadable(f"the shader has an array of {match[1]} that is not zero: bake other materials anew without this one")
         return f"{match[1]}_of({', '.join(given)})"
 
     def makers(self, functions):
