@@ -13,7 +13,7 @@ SIGNATURE, ARGUMENT = "$texSamplerSignature", "$texSamplerSampler2D"
 MATH = re.compile(r"\b(inversesqrt|sin|cos|tan|asin|acos|atan|mod)\(")
 ZERO = re.compile(r"0u|0\.0|false|vec[234]\(0\.0\)|\w+_zero\(\)")
 # What is not the same in all languages, and is left over nowhere.
-FOREIGN = re.compile(r"\bmat[234]\b|\w\[\d+\]\(|\b(?:texelFetch|textureSize|lessThan\w*|greaterThan\w*|[iub]vec[234]|(?:float|uint|int)BitsTo\w+|usampler2D|in?out|out)\b")
+FOREIGN = re.compile(r"\bmat[234]\b|\w\[\d+\]\(|\b(?:texelFetch|textureSize|[iu]vec[234]|(?:float|uint|int)BitsTo\w+|usampler2D|in?out|out)\b")
 
 HEAD = """// The functions of luthier for the materials of a bake, for MaterialX: GLSL that is also ESSL, Metal and Slang once MaterialX has renamed its types.
 // Made by luthier_mtlx.py: bake again instead of editing. Functions that read tables have their image as the first argument.
@@ -43,6 +43,12 @@ vec4 luthier_mx_halves(vec4 high, vec4 low)
 #elif defined(__SLANG__)
 #define texelFetch(image, at, level) image.tex.Load(int3(at, level))
 #define uintBitsToFloat(bits) asfloat(bits)
+#endif
+#if defined(__METAL_VERSION__) || defined(__SLANG__)
+#define lessThan(a, b) ((a) < (b))
+#define lessThanEqual(a, b) ((a) <= (b))
+#define greaterThan(a, b) ((a) > (b))
+#define greaterThanEqual(a, b) ((a) >= (b))
 #endif
 
 // A texel of the image.
