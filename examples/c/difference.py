@@ -77,4 +77,5 @@ def main():
         sys.exit(f"error: {label}: the limits are {' and '.join(limits)}")
 
 
-main()
+if __name__ == "__main__":
+    main()

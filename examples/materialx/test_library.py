@@ -23,6 +23,9 @@ import zlib
 import host
 import tables
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "c"))
+from difference import read  # noqa: E402
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 CARGO = ["cargo", "run", "--locked", "--quiet", "-p", "luthier-cli", "--bin", "luthier", "--"]
@@ -64,14 +67,6 @@ def write(path, pixels):
     rows = b"".join(b"\0" + b"".join(row[i : i + 3] + b"\xff" for i in range(0, len(row), 3)) for row in rgb)
     path.write_bytes(tables.png(len(pixels), len(pixels), rows))
     return b"".join(rgb)
-
-
-def read(path):
-    """RGB bytes of a PNG of 8 bits, by the reader of examples/c."""
-    reader = {}
-    source = (HERE.parent / "c" / "difference.py").read_text().rpartition("main()")[0]
-    exec(compile(source, "difference.py", "exec"), reader)
-    return reader["read"](path)[1]
 
 
 def difference(left, right, shown=lambda p, q: any(p) or any(q)):
@@ -117,7 +112,7 @@ def balls(out, bakes):
         scene.document.getNode(f"{name}_bsdf").setInputValue("slope_variance", SLOPE_VARIANCE)
         found = write(out / f"{material}.png", renderer.draw(scene, name))
         luthier("preview", material, "--out", out / bake, "-o", out / f"{material}-preview.png", *PREVIEW, *dark)
-        compare(f"{material} by MaterialX against preview", read(out / f"{material}-preview.png"), found)
+        compare(f"{material} by MaterialX against preview", read(out / f"{material}-preview.png")[1], found)
 
     # Images that a program turns upside down: the library's is turned by hand, and the generator is told.
     turned = out / "turned-library"
@@ -128,13 +123,13 @@ def balls(out, bakes):
     scene.add_light((0.5, 0.7, 0.6), LAMP)
     scene.document.getNode("polished_gold_bsdf").setInputValue("slope_variance", SLOPE_VARIANCE)
     pixels = write(out / "turned-gold.png", renderer.draw(scene, "polished_gold", turned=False))
-    compare("polished-gold by MaterialX with images that are turned against preview", read(out / "polished-gold-preview.png"), pixels)
+    compare("polished-gold with images that are turned by MaterialX against preview", read(out / "polished-gold-preview.png")[1], pixels)
 
     # Behind the ball there is the environment in one, and nothing in the other.
     grey = even(out / "grey.hdr", 128)
     pixels = write(out / "even-lacquer.png", renderer.draw(host.Host(bakes["sampled"]), "red_lacquer", environment=(grey, 64)))
     luthier("preview", "red-lacquer", "--out", out / "sampled", "-o", out / "even-lacquer-preview.png", *PREVIEW, "--environment", grey)
-    compare("red-lacquer by MaterialX in even light against preview", read(out / "even-lacquer-preview.png"), pixels, lambda p, q: any(q))
+    compare("red-lacquer in even light by MaterialX against preview", read(out / "even-lacquer-preview.png")[1], pixels, lambda p, q: any(q))
 
 
 def upside_down(png):
