@@ -10,7 +10,7 @@ import path from "node:path";
 
 import { patience } from "../scripts/patience.mjs";
 
-const TYPES = { ".html": "text/html", ".js": "text/javascript", ".json": "application/json", ".wasm": "application/wasm" };
+const TYPES = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript", ".json": "application/json", ".wasm": "application/wasm" };
 
 const [page, bake, scene, picture] = process.argv.slice(2);
 if (!scene) {
