@@ -58,7 +58,7 @@ async function lights(scene, bake, { material, floor }) {
   Object.assign(lamps.bare, { intensity: 40 });
   const shadows = Object.values(lamps).map((lamp) => {
     Object.assign(lamp, { shadowMinZ: 0.5, shadowMaxZ: 10, metadata: lamp.intensity });
-    const generator = new ShadowGenerator(1024, lamp);
+    const generator = new ShadowGenerator(512, lamp);
     generator.addShadowCaster(sphere);
     Object.assign(generator, { bias: 0.005, normalBias: 0.02 });
     return generator;
