@@ -108,7 +108,7 @@ async function moved(scene, bake) {
   const small = () => {
     const mesh = ball(scene, 48, 24);
     mesh.bakeTransformIntoVertices(Matrix.Scaling(0.45, 0.45, 0.45));
-    mesh.material = material;
+    mesh.material = material.clone("small");
     return mesh;
   };
 

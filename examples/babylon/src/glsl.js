@@ -44,7 +44,7 @@ vec3 luthier_lamp(preLightingInfo info, vec3 color) { return luthier_lit(info.at
 
 // The colours of a hemisphere are radiances.
 vec3 luthier_hemisphere(preLightingInfo info, vec3 sky, vec3 ground) {
-  return ${has("luthier_albedo") ? "luthier_ambient(LUTHIER_PI * mix(ground, sky, info.NdotL))" : "vec3(0.0)"};
+  return ${has("luthier_albedo") ? "luthier_ambient(PI * mix(ground, sky, info.NdotL))" : "vec3(0.0)"};
 }
 `,
     CUSTOM_FRAGMENT_BEFORE_LIGHTS: `

@@ -48,7 +48,7 @@ fn luthier_lamp(info: preLightingInfo, color: vec3f) -> vec3f { return luthier_l
 
 // The colours of a hemisphere are radiances.
 fn luthier_hemisphere(info: preLightingInfo, sky: vec3f, ground: vec3f) -> vec3f {
-  return ${has("luthier_albedo") ? "luthier_ambient(LUTHIER_PI * mix(ground, sky, info.NdotL))" : "vec3f(0.0)"};
+  return ${has("luthier_albedo") ? "luthier_ambient(PI * mix(ground, sky, info.NdotL))" : "vec3f(0.0)"};
 }
 `,
     CUSTOM_FRAGMENT_BEFORE_LIGHTS: `
