@@ -57,5 +57,5 @@ vec3 luthier_lit(vec3 color, vec3 direction) {
   if (color == vec3(0.0)) return vec3(0.0);
   return ${has("luthier_light_lit") ? "luthier_light_lit(luthier_prepared, direction * luthier_frame, color)" : "color * luthier_light(luthier_prepared, direction * luthier_frame)"};
 }
-${has("luthier_albedo") ? "\nvec3 luthier_ambient(vec3 irradiance) { return irradiance / LUTHIER_PI * luthier_albedo(luthier_prepared); }" : ""}`;
+${has("luthier_albedo") ? `\nvec3 luthier_ambient(vec3 irradiance) { return irradiance / ${Math.PI} * luthier_albedo(luthier_prepared); }` : ""}`;
 }

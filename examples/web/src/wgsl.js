@@ -57,5 +57,5 @@ fn luthier_lit(color: vec3<f32>, direction: vec3<f32>) -> vec3<f32> {
   if (all(color == vec3<f32>(0.0))) { return vec3<f32>(0.0); }
   return ${has("luthier_light_lit") ? "luthier_light_lit(luthier_prepared, direction * luthier_frame, color)" : "color * luthier_light(luthier_prepared, direction * luthier_frame)"};
 }
-${has("luthier_albedo") ? "\nfn luthier_ambient(irradiance: vec3<f32>) -> vec3<f32> { return irradiance / LUTHIER_PI * luthier_albedo(luthier_prepared); }" : ""}`;
+${has("luthier_albedo") ? `\nfn luthier_ambient(irradiance: vec3<f32>) -> vec3<f32> { return irradiance / ${Math.PI} * luthier_albedo(luthier_prepared); }` : ""}`;
 }
