@@ -1,4 +1,5 @@
-// Tests of luthier-babylon in Chromium with the software driver, by the WebGL 2 engine and the WebGPU engine: node test.mjs OUT. Pictures are left in OUT.
+// Tests of luthier-babylon in Chromium with the software driver, by the WebGL 2 engine and the WebGPU engine: node test.mjs OUT [NAME...]. Pictures are left in
+// OUT. Names are those of balls, `lights`, `moved`, `sixty` and `refused`; by default all are run.
 // - Balls against `luthier preview`: plain and textured materials, a film and a patina under one lamp, near a lamp, in an environment and in even light; in
 //   left-handed and right-handed scenes.
 // - Three kinds of lamps with shadows, against sums of single ones. Fog, a tone curve, instances, skins and morph targets.
@@ -16,8 +17,9 @@ import { difference, isLit } from "../web/difference.mjs";
 const here = import.meta.dirname;
 const root = path.join(here, "../..");
 const out = process.argv[2] && path.resolve(process.argv[2]);
+const only = process.argv.slice(3);
 if (!out) {
-  console.error("usage: node test.mjs OUT");
+  console.error("usage: node test.mjs OUT [NAME...]");
   process.exit(2);
 }
 await mkdir(out, { recursive: true });
@@ -38,6 +40,8 @@ async function page(html, bake, description, name) {
   return call("node", [path.join(root, "examples/browser.mjs"), path.join(here, html), bake, scene, path.join(out, `${name}.png`)]);
 }
 
+const wanted = (name) => !only.length || only.includes(name);
+
 const BAKED = ["--target", "wgsl,glsl-es300", "--form", "baked", "--quiet", "--functions"];
 const RENDERERS = ["webgl", "webgpu"];
 
@@ -47,17 +51,27 @@ const BALL = { size: 256, fov_y_deg: (360 / Math.PI) * Math.atan(1.22 / 7), eye_
 const PREVIEW = ["--shape", "sphere", "--size", "256", "--samples", "1", "--tone", "none", "--light-color", LAMP.join(), "--background"];
 const DARK = ["--environment", path.join(out, "black.hdr"), "--environment-samples", "1"];
 
+const BAKES = {
+  plain: ["materials/polished-gold.toml", "materials/red-lacquer.toml", "materials/copper-patina.toml", ...BAKED, "surface,environment,albedo"],
+  board: ["materials/textured", "--no-fit", ...BAKED, "surface"],
+  film: ["materials/papers/granier-film.toml", ...BAKED, "surface"],
+  // A limit on the error chooses texels of 10 bits.
+  packed: ["materials/polished-gold.toml", "--no-fit", "--max-abs", "3e-3", ...BAKED, "surface"],
+};
+const made = new Map();
+
+/** The folder of a bake, which is made once. */
+function baked(name) {
+  const folder = path.join(out, name);
+  if (!made.has(name)) made.set(name, luthier("bake", ...BAKES[name], "--out", folder).then(() => folder));
+  return made.get(name);
+}
+
 async function balls() {
   // Two texels of no light, and of a radiance of one half.
   const even = (byte) => Buffer.concat([Buffer.from("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n"), Buffer.alloc(8, byte)]);
   await writeFile(path.join(out, "black.hdr"), even(0));
   await writeFile(path.join(out, "grey.hdr"), even(128));
-  const [plain, board, packed, film] = ["plain", "board", "packed", "film"].map((name) => path.join(out, name));
-  await luthier("bake", "materials/polished-gold.toml", "materials/red-lacquer.toml", "materials/copper-patina.toml", "--out", plain, ...BAKED, "surface,environment,albedo");
-  await luthier("bake", "materials/textured", "--no-fit", "--out", board, ...BAKED, "surface");
-  await luthier("bake", "materials/papers/granier-film.toml", "--out", film, ...BAKED, "surface");
-  await luthier("bake", "materials/polished-gold.toml", "--no-fit", "--max-abs", "3e-3", "--out", packed, ...BAKED, "surface");
-  check((await readFile(path.join(packed, "manifest.json"), "utf8")).includes('"format": "rgb10a2unorm"'), "a bake has texels of 10 bits");
   await luthier("environment", "--sky", "strip-studio", "--layout", "cube", "--out", path.join(out, "studio"));
 
   const far = { lights: [{ direction: [0.5, 0.7, 0.6], irradiance: LAMP }] };
@@ -65,20 +79,21 @@ async function balls() {
   const studio = { lights: [], slope_variance: 0, environment: "studio/environment.json" };
   const [from, at, around] = [["--light", "0.5,0.7,0.6"], ["--point-light", "1,1.5,2"], ["--sky", "strip-studio"]];
   const cases = [
-    ["gold", "polished-gold", plain, far, [...from, ...DARK]],
-    ["packed-gold", "polished-gold", packed, far, [...from, ...DARK]],
-    ["lacquer", "red-lacquer", plain, far, [...from, ...DARK]],
-    ["near-lacquer", "red-lacquer", plain, near, [...at, ...DARK]],
-    ["lit-lacquer", "red-lacquer", plain, studio, around],
-    ["right-handed-lacquer", "red-lacquer", plain, { ...studio, handed: "right" }, around],
-    ["even-lacquer", "red-lacquer", plain, { lights: [{ radiance: [0.5, 0.5, 0.5] }] }, ["--environment", path.join(out, "grey.hdr")]],
-    ["patina", "copper-patina", plain, far, [...from, ...DARK]],
-    ["film", "granier-film", film, far, [...from, ...DARK]],
-    ["brass", "worn-brass", board, far, [...from, ...DARK]],
-    ["right-handed-brass", "worn-brass", board, { ...far, handed: "right" }, [...from, ...DARK]],
-    ["tile", "celadon-tile", board, far, [...from, ...DARK]],
+    ["gold", "polished-gold", "plain", far, [...from, ...DARK]],
+    ["packed-gold", "polished-gold", "packed", far, [...from, ...DARK]],
+    ["lacquer", "red-lacquer", "plain", far, [...from, ...DARK]],
+    ["near-lacquer", "red-lacquer", "plain", near, [...at, ...DARK]],
+    ["lit-lacquer", "red-lacquer", "plain", studio, around],
+    ["right-handed-lacquer", "red-lacquer", "plain", { ...studio, handed: "right" }, around],
+    ["even-lacquer", "red-lacquer", "plain", { lights: [{ radiance: [0.5, 0.5, 0.5] }] }, ["--environment", path.join(out, "grey.hdr")]],
+    ["patina", "copper-patina", "plain", far, [...from, ...DARK]],
+    ["film", "granier-film", "film", far, [...from, ...DARK]],
+    ["brass", "worn-brass", "board", far, [...from, ...DARK]],
+    ["right-handed-brass", "worn-brass", "board", { ...far, handed: "right" }, [...from, ...DARK]],
+    ["tile", "celadon-tile", "board", far, [...from, ...DARK]],
   ];
-  for (const [name, material, bake, lit, options] of cases) {
+  for (const [name, material, baking, lit, options] of cases.filter(([name]) => wanted(name))) {
+    const bake = await baked(baking);
     const expected = path.join(out, `${name}-preview.png`);
     await luthier("preview", material, "--out", bake, "-o", expected, ...PREVIEW, ...options);
     for (const renderer of RENDERERS) {
@@ -91,17 +106,23 @@ async function balls() {
     }
   }
 
+  if (wanted("packed-gold")) {
+    const manifest = await readFile(path.join(await baked("packed"), "manifest.json"), "utf8");
+    check(manifest.includes('"format": "rgb10a2unorm"'), "a bake has texels of 10 bits");
+  }
+  if (only.length) return;
+
   // A tone curve of Babylon.js, by its two engines; without it the pictures are others.
   const toned = (renderer) => path.join(out, `toned-${renderer}.png`);
   for (const renderer of RENDERERS) {
-    await page("index.html", plain, { ...BALL, ...far, renderer, material: "red-lacquer", tone: "TONEMAPPING_ACES" }, `toned-${renderer}`);
+    await page("index.html", await baked("plain"), { ...BALL, ...far, renderer, material: "red-lacquer", tone: "TONEMAPPING_ACES" }, `toned-${renderer}`);
   }
   const [same, other] = [await difference(...RENDERERS.map(toned)), await difference(toned("webgl"), path.join(out, "lacquer-webgl.png"))];
   check(same.p99 <= 1 && other.median > 5, `a tone curve: ${same.p99} of 255 between the engines (99 %), ${other.median} against none (median)`);
-  return plain;
 }
 
-async function lamps(bake) {
+async function lights() {
+  const bake = await baked("plain");
   for (const renderer of RENDERERS) {
     const { lit, shadowed, sum_off, inside_of_cone, outside_of_cone, programs, fog_off } = JSON.parse(
       await page("test.html", bake, { renderer, scene: "lights", material: "red-lacquer", floor: "red-lacquer" }, `lights-${renderer}`),
@@ -116,7 +137,8 @@ async function lamps(bake) {
   }
 }
 
-async function moved(bake) {
+async function moved() {
+  const bake = await baked("plain");
   for (const renderer of RENDERERS) {
     const { off, lit } = JSON.parse(await page("test.html", bake, { renderer, scene: "moved" }, `moved-${renderer}`));
     check(off < 1e-3 && lit > 10000, `instances, a skin and a morph target by ${renderer} are where meshes are: ${off.toExponential(1)} off, ${lit} pixels`);
@@ -157,30 +179,29 @@ async function sixty() {
 }
 
 /** Bakes that are refused, and a word of the reason. */
-async function refusals() {
+async function refused() {
   const bake = path.join(out, "refused");
   const gold = ["bake", "materials/polished-gold.toml", "--no-fit", "--quiet", "--out", bake];
-  const refused = async (renderer, word, change = (manifest) => manifest) => {
+  const refuses = async (renderer, word, change = (manifest) => manifest) => {
     const file = path.join(bake, "manifest.json");
     await writeFile(file, change(await readFile(file, "utf8")));
     const said = await page("index.html", bake, { ...BALL, lights: [], renderer, material: "polished-gold" }, "refused").then(() => "nothing", ({ stderr }) => stderr);
     check(said.includes(word), `a bake is refused: ${said.match(/Error: (.*)/)?.[1] ?? said}`);
   };
   await luthier(...gold);
-  await refused("webgl", "--functions surface");
+  await refuses("webgl", "--functions surface");
   await luthier(...gold, "--target", "wgsl", "--functions", "surface");
-  await refused("webgl", "--target glsl-es300");
+  await refuses("webgl", "--target glsl-es300");
   await luthier(...gold, "--target", "glsl-es300", "--functions", "surface");
-  await refused("webgpu", "--target wgsl");
-  await refused("webgl", "schema 5", (manifest) => manifest.replace('"schema": 4', '"schema": 5'));
-  await refused("webgl", "no JSON", (manifest) => manifest.slice(1));
+  await refuses("webgpu", "--target wgsl");
+  await refuses("webgl", "schema 5", (manifest) => manifest.replace('"schema": 4', '"schema": 5'));
+  await refuses("webgl", "no JSON", (manifest) => manifest.slice(1));
 }
 
-const plain = await balls();
-await lamps(plain);
-await moved(plain);
-await sixty();
-await refusals();
+await balls();
+for (const part of [lights, moved, sixty, refused]) {
+  if (wanted(part.name)) await part();
+}
 if (failures.length) {
   console.error(`${failures.length} failed:\n${failures.join("\n")}`);
   process.exit(1);
