@@ -1,4 +1,4 @@
-// A ball of a baked material, under lamps and, where scene.json names one, in an environment.
+// A scene with a ball of a baked material, under lamps and, where it has one, in an environment.
 
 import { FreeCamera } from "@babylonjs/core/Cameras/freeCamera.js";
 import { DirectionalLight } from "@babylonjs/core/Lights/directionalLight.js";
@@ -7,11 +7,15 @@ import { PointLight } from "@babylonjs/core/Lights/pointLight.js";
 import { ImageProcessingConfiguration } from "@babylonjs/core/Materials/imageProcessingConfiguration.js";
 import { Color3, Color4 } from "@babylonjs/core/Maths/math.color.js";
 import { Vector3 } from "@babylonjs/core/Maths/math.vector.js";
+import { Scene } from "@babylonjs/core/scene.js";
 import { LuthierBake, LuthierEnvironment } from "luthier-babylon";
-import { ball, driver, open, placed, run, show } from "./page.js";
+import { ball, placed } from "./page.js";
 
-run(async ({ renderer, size, material, lights, background, fov_y_deg, eye_distance, slope_variance: slopeVariance, environment, tone, handed }) => {
-  const { engine, scene } = await open(renderer, size, handed === "right");
+/** The scene of a description such as `../scene.json`. Bake and environment are folders that the page can load from. */
+export async function ballScene(engine, bakeFolder, description) {
+  const { material, lights, background, fov_y_deg, eye_distance, slope_variance: slopeVariance, environment, tone, handed } = description;
+  const scene = new Scene(engine);
+  scene.useRightHandedSystem = handed === "right";
   scene.clearColor = new Color4(...background, 1);
   if (tone) {
     scene.imageProcessingConfiguration.toneMappingEnabled = true;
@@ -21,11 +25,11 @@ run(async ({ renderer, size, material, lights, background, fov_y_deg, eye_distan
   camera.setTarget(Vector3.Zero());
   camera.fov = (fov_y_deg * Math.PI) / 180;
   for (const light of lights) lamp(scene, light);
-  const bake = await LuthierBake.LoadAsync("bake/manifest.json", scene);
+  const bake = await LuthierBake.LoadAsync(`${bakeFolder}/manifest.json`, scene);
   if (environment) bake.environment = await LuthierEnvironment.LoadAsync(`scene/${environment}`, scene);
   ball(scene).material = bake.material(material, { slopeVariance });
-  return { picture: await show(scene, size), driver: driver(engine) };
-});
+  return scene;
+}
 
 /** A light far away, or at a position, whose irradiance is that at the centre, or from all around with the same radiance. */
 function lamp(scene, { direction, position, irradiance, radiance }) {

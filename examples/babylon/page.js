@@ -4,13 +4,12 @@ import { Mesh } from "@babylonjs/core/Meshes/mesh.js";
 import { VertexData } from "@babylonjs/core/Meshes/mesh.vertexData.js";
 import { Constants } from "@babylonjs/core/Engines/constants.js";
 import { RenderTargetTexture } from "@babylonjs/core/Materials/Textures/renderTargetTexture.js";
-import { Scene } from "@babylonjs/core/scene.js";
 
 const errors = [];
 const isSaved = new URLSearchParams(location.search).has("save");
 
-/** A scene of either engine, "webgl" or "webgpu", with a square canvas. */
-export async function open(kind, size, isRightHanded = false) {
+/** An engine of either kind, "webgl" or "webgpu", with a square canvas. */
+export async function open(kind, size) {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = size;
   document.body.append(canvas);
@@ -29,9 +28,7 @@ export async function open(kind, size, isRightHanded = false) {
     const { Engine } = await import("@babylonjs/core/Engines/engine.js");
     engine = new Engine(canvas, false, { ...settings, preserveDrawingBuffer: true });
   }
-  const scene = new Scene(engine);
-  scene.useRightHandedSystem = isRightHanded;
-  return { engine, scene };
+  return engine;
 }
 
 /** Without a window WebGPU has no canvas to draw into. A texture stands for it. */
@@ -87,7 +84,7 @@ export function exposure(scene, size, isFloat) {
 
 /** Draws into the canvas, and for the server as PNG. */
 export async function show(scene, size) {
-  if (isSaved) return png(await exposure(scene, size, false)());
+  if (isSaved) return png(await exposure(scene, size)());
   await scene.whenReadyAsync();
   scene.render();
   return undefined;

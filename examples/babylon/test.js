@@ -1,4 +1,4 @@
-// Scenes of test.mjs. They are drawn into textures of linear 32-bit floats, so that figures are of light.
+// Scenes of test.mjs. All but the balls are drawn into textures of linear 32-bit floats, so that figures are of light.
 
 import { Bone } from "@babylonjs/core/Bones/bone.js";
 import { Skeleton } from "@babylonjs/core/Bones/skeleton.js";
@@ -18,20 +18,38 @@ import { MorphTarget } from "@babylonjs/core/Morph/morphTarget.js";
 import { MorphTargetManager } from "@babylonjs/core/Morph/morphTargetManager.js";
 import { Scene } from "@babylonjs/core/scene.js";
 import { LuthierBake } from "luthier-babylon";
+import { ballScene } from "./ball.js";
 import { ball, driver, exposure, open, png, run } from "./page.js";
 
 const SIZE = 256;
 const SCENES = { lights, moved, set };
 
 run(async ({ renderer, scene: name, ...rest }) => {
-  const { engine, scene } = await open(renderer, SIZE);
+  const engine = await open(renderer, SIZE);
+  const { picture, figures } = name === "balls" ? await balls(engine, rest) : await linear(engine, SCENES[name], rest);
+  return { picture, figures, driver: driver(engine) };
+});
+
+/** A picture of each ball of a list. The bakes are in the folder of the description. */
+async function balls(engine, { list }) {
+  const figures = {};
+  for (const { name, bake, ...description } of list) {
+    const scene = await ballScene(engine, `scene/${bake}`, description);
+    figures[name] = png(await exposure(scene, SIZE)());
+    scene.dispose();
+  }
+  return { picture: Object.values(figures)[0], figures };
+}
+
+/** A scene whose colours stay linear, and without a bound. */
+async function linear(engine, draw, description) {
+  const scene = new Scene(engine);
   scene.clearColor = new Color4(0, 0, 0, 1);
-  // Colours stay linear, and without a bound.
   Object.assign(scene.imageProcessingConfiguration, { applyByPostProcess: true, skipFinalColorClamp: true });
   const bake = await LuthierBake.LoadAsync("bake/manifest.json", scene);
-  const { pixels, figures } = await SCENES[name](scene, bake, rest);
-  return { picture: png(toned(pixels)), figures, driver: driver(engine) };
-});
+  const { pixels, figures } = await draw(scene, bake, description);
+  return { picture: png(toned(pixels)), figures };
+}
 
 /** A ball over a floor under a lamp of each kind. Every lamp alone, all together, and each without its shadow. */
 async function lights(scene, bake, { material, floor }) {

@@ -5,14 +5,19 @@ import { Bake, mapKey, readBake, readEnvironment } from "luthier-web";
 import { LuthierMaterial } from "./material.js";
 import { blackCube, cubeTexture, mapTexture, tableTexture, whiteTexel, wordsOf } from "./texture.js";
 
-let count = 0;
+const texts = new Map();
+
+/** Tells the program of a bake from those of others. A bake that is loaded again has the program that it had. */
+function programOf(text) {
+  if (!texts.has(text)) texts.set(text, texts.size + 1);
+  return texts.get(text);
+}
 
 export class LuthierBake extends Bake {
   constructor(files, scene) {
     super(files);
     this.scene = scene;
-    /** Tells the program of the bake from those of others. */
-    this.id = ++count;
+    this.program = programOf(this.text + JSON.stringify(this.surface.lines));
     /** The material buffer: a storage buffer in WebGPU, a texture in WebGL 2. */
     this.materials = wordsOf(this, scene);
     /** What stands for a map, and for surroundings, that are not there. */

@@ -86,7 +86,7 @@ class LuthierPlugin extends MaterialPluginBase {
   }
 
   prepareDefines(defines) {
-    defines.LUTHIER_BAKE = this._material.luthier.bake.id;
+    defines.LUTHIER_BAKE = this._material.luthier.bake.program;
     // Lights are taken as a whole.
     defines.SPECULARTERM = false;
   }
