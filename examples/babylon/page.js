@@ -54,7 +54,8 @@ export function ball(scene, columns = 128, rows = 64) {
       uvs.push(u + 0.25, v);
       if (row === rows || column === columns) continue;
       const [a, b, c, d] = [0, 1, columns + 1, columns + 2].map((step) => row * (columns + 1) + column + step);
-      indices.push(...[b, a, c, b, c, d]);
+      // Faces of right-handed scenes turn the other way.
+      indices.push(...(flip < 0 ? [b, a, c, b, c, d] : [a, b, c, c, b, d]));
     }
   }
   const data = Object.assign(new VertexData(), { positions, indices, uvs, normals: [...positions] });
