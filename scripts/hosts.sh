@@ -27,4 +27,4 @@ for host in "${@:-${hosts[@]}}"; do
   esac >"$logs/$host.new"
   mv "$logs/$host.new" "$logs/$host.log"
 done
-for host in "${hosts[@]}"; do echo "$logs/$host.log"; done | xargs python3 scripts/hosts.py
+for host in "${hosts[@]}"; do if [ -e "$logs/$host.log" ]; then echo "$logs/$host.log"; fi; done | xargs python3 scripts/hosts.py

@@ -175,6 +175,8 @@ async function refusals() {
   };
   await luthier(...lacquer);
   await refused("--functions surface");
+  await luthier(...lacquer, "--target", "glsl-es300", "--functions", "surface", "--prefix", "gold");
+  await refused("without --prefix");
   await luthier(...lacquer, "--target", "wgsl", "--functions", "surface");
   await refused("--target glsl-es300");
   await refused("schema 5", (manifest) => manifest.replace('"schema": 4', '"schema": 5'));

@@ -39,7 +39,7 @@ pub enum LuthierError {
     #[error("{path}: {error}")]
     Read { path: String, error: ReadAssetBytesError },
     /// The manifest cannot be read.
-    #[error("{path}: {error}; bake again with the luthier of this crate's version")]
+    #[error("{path}: {error}")]
     Manifest { path: String, error: ManifestError },
     /// A file is no text.
     #[error("{0} is no text")]

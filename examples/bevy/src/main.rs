@@ -231,7 +231,9 @@ fn take_pictures(
 ) -> Result {
     orders.waited += 1;
     if let LoadState::Failed(error) = server.load_state(&stage.bake) {
-        eprintln!("error: {error}");
+        // A backtrace follows the first line.
+        let error = error.to_string();
+        eprintln!("error: {}", error.lines().next().unwrap_or_default());
         exit.write(AppExit::error());
         return Ok(());
     }

@@ -90,6 +90,8 @@ function problem(manifest, { host, name, target }) {
     return `the bake has no baked shader in ${target}, only ${has}: bake with --target ${target}`;
   }
   if (!manifest.functions?.includes("surface")) return "the shader takes no normals and maps of a renderer: bake with --functions surface";
+  const { prefix } = manifest.names ?? {};
+  if (prefix) return `the names of its shader begin with ${prefix}_: bake without --prefix`;
   const steps = manifest.bindings.find(({ resource }) => resource === "buffer<vec4<u32>>");
   return steps && `${steps.name} is in whole numbers, which ${host} does not filter: bake with --layout filtered`;
 }
