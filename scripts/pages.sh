@@ -65,6 +65,8 @@ families-plastic() { luthier-lab families --group plastic --group tinted --group
 families-metal() { luthier-lab families --group metal --noise 0.005 -o docs/pages/families-metal.md; }
 coats() { luthier-lab coats --noise 0.005 -o docs/pages/coats.md; }
 formats() { luthier-lab formats materials -o docs/pages/formats.md; }
+# By its name only: wants what the hosts want, and half an hour.
+hosts() { LUTHIER=${LUTHIER:?names the program} scripts/hosts.sh >docs/pages/hosts.md; }
 five-ways() { luthier-lab five-ways -o docs/pages/five-ways.md; }
 varying() { luthier-lab varying --random 8 --noise 0.015 -o docs/pages/varying.md; }
 anisotropic() {
