@@ -18,7 +18,7 @@ const SOURCES: &str = "
 | Filament | `surface_shading_model_standard.fs`, `surface_brdf.fs` | Kelemen's masking, F0 below index 1.5, the base at least as rough as the coat, factor of energy | integrals of albedos in place of a table |
 | Disney | `disney.brdf` of wdas/brdf | a quarter of GTR1 added by design, nothing taken from the base | `clearcoatGloss` beyond its range for slope parameters above .1 |
 | Standard Surface | `standard_surface.mtlx`, MaterialX 1.39 | the graph, the GLSL nodes with their fit of albedos, `artistic_ior` with a white edge; `coat_affect_color` and `coat_affect_roughness`, which would darken and roughen the base, at their default of 0 | exact conductors |
-| albedo scaling | Cycles' Principled BSDF: `svm/closure.h`, `closure/bsdf_util.h` and `bsdf_microfacet.h` of Blender; Kulla and Conty 2017 | the base times 1 less the albedo of the coat; energy preserved in all lobes | integrals in place of tables |
+| albedo scaling | Cycles' Principled BSDF: `closure.h`, `bsdf_util.h` and `bsdf_microfacet.h` of Blender; Kulla and Conty 2017 | the base times 1 less the albedo of the coat; energy preserved in all lobes | integrals in place of tables |
 | OpenPBR | `open_pbr_surface.mtlx`, MaterialX 1.39 | the graph with its roughening and darkening, the GLSL nodes | `coat_ior` 1.5 in place of 1.6 |
 | Adobe | adobe/openpbr-bsdf, a29da969 | both passages through the coat, its own roughening and darkening, light between facets of metals | integrals in place of tables, masking as a product |
 ";
