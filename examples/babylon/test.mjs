@@ -8,48 +8,19 @@
 // Needs a Vulkan driver and `npm ci` in this folder. The environment variable LUTHIER names the program that bakes; by default cargo builds it. CHROMIUM
 // names the browser.
 
-import { execFile } from "node:child_process";
-import { mkdir, readFile, writeFile } from "node:fs/promises";
+import { readFile, writeFile } from "node:fs/promises";
 import path from "node:path";
-import { promisify } from "node:util";
-import { difference, isLit } from "../web/difference.mjs";
-
-const here = import.meta.dirname;
-const root = path.join(here, "../..");
-const out = process.argv[2] && path.resolve(process.argv[2]);
-const only = process.argv.slice(3);
-if (!out) {
-  console.error("usage: node test.mjs OUT [NAME...]");
-  process.exit(2);
-}
-await mkdir(out, { recursive: true });
-
-const call = async (program, args) => (await promisify(execFile)(program, args, { cwd: root, maxBuffer: 1 << 26 })).stdout;
-const CARGO = ["run", "--locked", "--quiet", "-p", "luthier-cli", "--bin", "luthier", "--"];
-const luthier = (...args) => (process.env.LUTHIER ? call(process.env.LUTHIER, args) : call("cargo", [...CARGO, ...args]));
-const failures = [];
-const check = (holds, words) => {
-  console.log(`${holds ? "holds" : "FAILS"}: ${words}`);
-  if (!holds) failures.push(words);
-};
+import { difference } from "../web/difference.mjs";
+import { BALL, DARK, LAMP, check, compare, file, finish, luthier, out, paints, preview, show } from "../web/workshop.mjs";
 
 /** A page of this folder with a bake and a description; its figures. */
-async function page(html, bake, description, name) {
-  const scene = path.join(out, `${name}.json`);
-  await writeFile(scene, JSON.stringify(description));
-  return call("node", [path.join(root, "examples/browser.mjs"), path.join(here, html), bake, scene, path.join(out, `${name}.png`)]);
-}
+const page = (html, ...rest) => show(path.join(import.meta.dirname, html), ...rest);
 
+const only = process.argv.slice(3);
 const wanted = (name) => !only.length || only.includes(name);
 
 const BAKED = ["--target", "wgsl,glsl-es300", "--form", "baked", "--quiet", "--functions"];
 const RENDERERS = ["webgl", "webgpu"];
-
-/** The camera of `preview --shape sphere`, 7 away, and its lamps, which have a size. */
-const LAMP = [1.75, 1.7, 1.62];
-const BALL = { size: 256, fov_y_deg: (360 / Math.PI) * Math.atan(1.22 / 7), eye_distance: 7, slope_variance: 0.05 ** 2 / 8, background: [0, 0, 0] };
-const PREVIEW = ["--shape", "sphere", "--size", "256", "--samples", "1", "--tone", "none", "--light-color", LAMP.join(), "--background"];
-const DARK = ["--environment", path.join(out, "black.hdr"), "--environment-samples", "1"];
 
 const BAKES = {
   plain: ["materials/polished-gold.toml", "materials/red-lacquer.toml", "materials/copper-patina.toml", ...BAKED, "surface,environment,albedo"],
@@ -62,17 +33,13 @@ const made = new Map();
 
 /** The folder of a bake, which is made once. */
 function baked(name) {
-  const folder = path.join(out, name);
+  const folder = file(name);
   if (!made.has(name)) made.set(name, luthier("bake", ...BAKES[name], "--out", folder).then(() => folder));
   return made.get(name);
 }
 
 async function balls() {
-  // Two texels of no light, and of a radiance of one half.
-  const even = (byte) => Buffer.concat([Buffer.from("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n"), Buffer.alloc(8, byte)]);
-  await writeFile(path.join(out, "black.hdr"), even(0));
-  await writeFile(path.join(out, "grey.hdr"), even(128));
-  await luthier("environment", "--sky", "strip-studio", "--layout", "cube", "--out", path.join(out, "studio"));
+  await luthier("environment", "--sky", "strip-studio", "--layout", "cube", "--out", file("studio"));
 
   const far = { lights: [{ direction: [0.5, 0.7, 0.6], irradiance: LAMP }] };
   const near = { lights: [{ position: [1, 1.5, 2], irradiance: LAMP }] };
@@ -85,7 +52,7 @@ async function balls() {
     ["near-lacquer", "red-lacquer", "plain", near, [...at, ...DARK]],
     ["lit-lacquer", "red-lacquer", "plain", studio, around],
     ["right-handed-lacquer", "red-lacquer", "plain", { ...studio, handed: "right" }, around],
-    ["even-lacquer", "red-lacquer", "plain", { lights: [{ radiance: [0.5, 0.5, 0.5] }] }, ["--environment", path.join(out, "grey.hdr")]],
+    ["even-lacquer", "red-lacquer", "plain", { lights: [{ radiance: [0.5, 0.5, 0.5] }] }, ["--environment", file("grey.hdr")]],
     ["patina", "copper-patina", "plain", far, [...from, ...DARK]],
     ["film", "granier-film", "film", far, [...from, ...DARK]],
     ["brass", "worn-brass", "board", far, [...from, ...DARK]],
@@ -94,7 +61,7 @@ async function balls() {
   ];
   const chosen = cases.filter(([name]) => wanted(name));
   for (const [name, material, bake, , options] of chosen) {
-    await luthier("preview", material, "--out", await baked(bake), "-o", path.join(out, `${name}-preview.png`), ...PREVIEW, ...options);
+    await preview(material, await baked(bake), file(`${name}-preview.png`), options);
   }
   const list = chosen.map(([name, material, bake, lit]) => ({ ...BALL, ...lit, name, material, bake }));
   // A tone curve of Babylon.js; without it the pictures are others.
@@ -102,16 +69,12 @@ async function balls() {
   if (!list.length) return;
   for (const renderer of RENDERERS) {
     const pictures = JSON.parse(await page("test.html", out, { renderer, scene: "balls", list }, `balls-${renderer}`));
-    for (const [name, url] of Object.entries(pictures)) await writeFile(path.join(out, `${name}-${renderer}.png`), Buffer.from(url.split(",")[1], "base64"));
+    for (const [name, url] of Object.entries(pictures)) await writeFile(file(`${name}-${renderer}.png`), Buffer.from(url.split(",")[1], "base64"));
   }
-  const picture = (name, renderer) => path.join(out, `${name}-${renderer}.png`);
+  const picture = (name, renderer) => file(`${name}-${renderer}.png`);
   for (const [name, , , , options] of chosen) {
     for (const renderer of RENDERERS) {
-      // Behind the ball there is the environment in one, and nothing in the other.
-      const shown = options.includes("--environment-samples") ? undefined : (_, pixel) => isLit(pixel);
-      const { median, p95, p99, most, pixels } = await difference(picture(name, "preview"), picture(name, renderer), shown);
-      // A texture that is misread makes 5 or more in the 95 %.
-      check(median <= 2 && p95 <= 3, `${name} by ${renderer} against preview: median ${median} of 255, 95 % within ${p95}, 99 % within ${p99}, largest ${most}, ${pixels} pixels`);
+      await compare(name, renderer, picture(name, "preview"), picture(name, renderer), options);
     }
   }
   if (wanted("toned") && wanted("lacquer")) {
@@ -148,33 +111,9 @@ async function moved() {
   }
 }
 
-/** A varnish over a metal or a paint. */
-const paint = (i) => {
-  const hue = (shift) => (0.5 + 0.4 * Math.cos(2 * Math.PI * (i / 55 + shift))).toFixed(3);
-  return `schema = 1
-name = "paint-${i}"
-description = "A varnished paint."
-references = []
-
-[[layer]]
-type = "dielectric"
-ior = 1.5
-roughness = ${(0.1 + 0.005 * i).toFixed(3)}
-
-[[layer]]
-type = "metallic-roughness"
-base_color = [${hue(0)}, ${hue(1 / 3)}, ${hue(2 / 3)}]
-metallic = ${i % 2}.0
-roughness = ${(0.3 + 0.01 * i).toFixed(2)}
-`;
-};
-
 async function sixty() {
-  const paints = path.join(out, "paints");
-  await mkdir(paints, { recursive: true });
-  for (let i = 0; i < 55; i++) await writeFile(path.join(paints, `paint-${i}.toml`), paint(i));
-  const bake = path.join(out, "sixty");
-  await luthier("bake", paints, "materials/textured", "--no-fit", "--out", bake, ...BAKED, "surface");
+  const bake = file("sixty");
+  await luthier("bake", await paints(), "materials/textured", "--no-fit", "--out", bake, ...BAKED, "surface");
   for (const renderer of RENDERERS) {
     const { materials, programs, first_ms, frame_ms } = JSON.parse(await page("test.html", bake, { renderer, scene: "set" }, `sixty-${renderer}`));
     check(materials === 60 && programs === 1, `${materials} materials by ${renderer}, ${programs} program: first frame ${first_ms} ms, then ${frame_ms} ms a frame of 512 x 512`);
@@ -183,11 +122,11 @@ async function sixty() {
 
 /** Bakes that are refused, and a word of the reason. */
 async function refused() {
-  const bake = path.join(out, "refused");
+  const bake = file("refused");
   const gold = ["bake", "materials/polished-gold.toml", "--no-fit", "--quiet", "--out", bake];
   const refuses = async (renderer, word, change = (manifest) => manifest) => {
-    const file = path.join(bake, "manifest.json");
-    await writeFile(file, change(await readFile(file, "utf8")));
+    const manifest = path.join(bake, "manifest.json");
+    await writeFile(manifest, change(await readFile(manifest, "utf8")));
     const said = await page("index.html", bake, { ...BALL, lights: [], renderer, material: "polished-gold" }, "refused").then(() => "nothing", ({ stderr }) => stderr);
     check(said.includes(word), `a bake is refused: ${said.match(/Error: (.*)/)?.[1] ?? said}`);
   };
@@ -205,7 +144,4 @@ await balls();
 for (const part of [lights, moved, sixty, refused]) {
   if (wanted(part.name)) await part();
 }
-if (failures.length) {
-  console.error(`${failures.length} failed:\n${failures.join("\n")}`);
-  process.exit(1);
-}
+finish();

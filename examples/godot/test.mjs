@@ -13,44 +13,28 @@ import path from "node:path";
 import { promisify } from "node:util";
 import { crc32, deflateSync } from "node:zlib";
 import { difference } from "../web/difference.mjs";
+import { BALL, DARK, LAMP, call, check, compare, file, finish, luthier, preview } from "../web/workshop.mjs";
 
 const here = import.meta.dirname;
-const root = path.join(here, "../..");
-const out = process.argv[2] && path.resolve(process.argv[2]);
-if (!out) {
-  console.error("usage: node test.mjs OUT");
-  process.exit(2);
-}
-await mkdir(out, { recursive: true });
-
-const call = async (program, args) => (await promisify(execFile)(program, args, { cwd: root, maxBuffer: 1 << 26 })).stdout;
-const CARGO = ["run", "--locked", "--quiet", "-p", "luthier-cli", "--bin", "luthier", "--"];
-const luthier = (...args) => (process.env.LUTHIER ? call(process.env.LUTHIER, args) : call("cargo", [...CARGO, ...args]));
-const failures = [];
-const check = (holds, words) => {
-  console.log(`${holds ? "holds" : "FAILS"}: ${words}`);
-  if (!holds) failures.push(words);
-};
-
 const { GODOT = "godot", GODOT3 } = process.env;
 const ALL = {
-  "Godot 4 Forward+": { name: "forward", program: GODOT, options: ["--rendering-method", "forward_plus"], project: path.join(out, "project") },
-  "Godot 4 Mobile": { name: "mobile", program: GODOT, options: ["--rendering-method", "mobile"], project: path.join(out, "project") },
-  "Godot 4 Compatibility": { name: "compatibility", program: GODOT, options: ["--rendering-method", "gl_compatibility"], project: path.join(out, "project") },
-  ...(GODOT3 && { "Godot 3.6": { name: "godot3", program: GODOT3, options: ["--video-driver", "GLES3"], project: path.join(out, "project3") } }),
+  "Godot 4 Forward+": { name: "forward", program: GODOT, options: ["--rendering-method", "forward_plus"], project: file("project") },
+  "Godot 4 Mobile": { name: "mobile", program: GODOT, options: ["--rendering-method", "mobile"], project: file("project") },
+  "Godot 4 Compatibility": { name: "compatibility", program: GODOT, options: ["--rendering-method", "gl_compatibility"], project: file("project") },
+  ...(GODOT3 && { "Godot 3.6": { name: "godot3", program: GODOT3, options: ["--video-driver", "GLES3"], project: file("project3") } }),
 };
 const wanted = process.argv.slice(3);
 const RENDERERS = Object.fromEntries(Object.entries(ALL).filter(([, { name }]) => !wanted.length || wanted.includes(name)));
 
 /** Copies of this folder as a project for either version: Godot writes into the folder of a project. */
 async function projects() {
-  const [four, three] = ["project", "project3"].map((name) => path.join(out, name));
+  const [four, three] = ["project", "project3"].map(file);
   for (const folder of [four, three]) {
     await rm(folder, { recursive: true, force: true });
     await cp(path.join(here, "addons"), path.join(folder, "addons"), { recursive: true });
   }
-  for (const file of ["project.godot", "test.gd"]) await cp(path.join(here, file), path.join(four, file));
-  for (const file of ["project.godot", "test.gd"]) await cp(path.join(here, "godot3", file), path.join(three, file));
+  for (const name of ["project.godot", "test.gd"]) await cp(path.join(here, name), path.join(four, name));
+  for (const name of ["project.godot", "test.gd"]) await cp(path.join(here, "godot3", name), path.join(three, name));
   await cp(path.join(here, "godot3/luthier_bake.gd"), path.join(three, "addons/luthier/luthier_bake.gd"));
   // Registers the classes of scripts, as the editor does.
   await call(GODOT, ["--headless", "--path", four, "--import"]);
@@ -59,16 +43,16 @@ async function projects() {
 /** What a renderer says while it does what `test.gd` does with a list. */
 async function draw(renderer, list) {
   const { program, options, project } = RENDERERS[renderer];
-  const file = path.join(out, `${RENDERERS[renderer].name}.json`);
-  await writeFile(file, JSON.stringify(list, null, 1));
-  const args = ["-a", program, ...options, "--audio-driver", "Dummy", "--path", project, "--script", "test.gd", "--", file];
+  const scenes = file(`${RENDERERS[renderer].name}.json`);
+  await writeFile(scenes, JSON.stringify(list, null, 1));
+  const args = ["-a", program, ...options, "--audio-driver", "Dummy", "--path", project, "--script", "test.gd", "--", scenes];
   const { stdout, stderr } = await promisify(execFile)("xvfb-run", args, { maxBuffer: 1 << 26 }).catch((error) => error);
   return `${stdout}${stderr}`;
 }
 
 /** A normal map of dents, and a material with it: a varnish over brushed gold, whose tangents turn. */
 async function dented() {
-  const folder = path.join(out, "dented");
+  const folder = file("dented");
   await mkdir(folder, { recursive: true });
   const size = 128;
   const turn = (2 * Math.PI) / size;
@@ -81,9 +65,9 @@ async function dented() {
   const tangent = (x, y) => [byte(Math.cos(y + Math.sin(x))), byte(Math.sin(y + Math.sin(x))), 0];
   await writeFile(path.join(folder, "dents.png"), png(size, picture(dent)));
   await writeFile(path.join(folder, "turns.png"), png(size, picture(tangent)));
-  const file = path.join(folder, "dented-gold.toml");
+  const material = path.join(folder, "dented-gold.toml");
   await writeFile(
-    file,
+    material,
     `schema = 1
 name = "dented-gold"
 description = "A varnish over brushed gold, with dents."
@@ -103,7 +87,7 @@ alpha_y = 0.15
 maps = { tangent = "turns.png" }
 `,
   );
-  return file;
+  return material;
 }
 
 /** A PNG of rows of RGB, each behind its filter. */
@@ -119,16 +103,11 @@ function png(size, rows) {
 
 const BAKE = ["--target", "wgsl,glsl-es300", "--form", "baked", "--quiet", "--functions", "surface"];
 
-/** The camera of `preview --shape sphere`, 7 away, and its lamps, which have a size. */
-const LAMP = [1.75, 1.7, 1.62];
-const BALL = { kind: "picture", size: 256, fov_y_deg: (360 / Math.PI) * Math.atan(1.22 / 7), eye_distance: 7, slope_variance: 0.05 ** 2 / 8, tangents: true };
-const PREVIEW = ["--shape", "sphere", "--size", "256", "--samples", "1", "--tone", "none", "--light-color", LAMP.join(), "--background"];
+const SCENE = { ...BALL, kind: "picture", tangents: true };
 
 /** Materials, lamps, and what `preview` is told of them. */
 async function cases() {
-  // Two texels of no light.
-  await writeFile(path.join(out, "black.hdr"), Buffer.concat([Buffer.from("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n"), Buffer.alloc(8)]));
-  const [plain, board, film, dents, packed] = ["plain", "board", "film", "dents", "packed"].map((name) => path.join(out, name));
+  const [plain, board, film, dents, packed] = ["plain", "board", "film", "dents", "packed"].map(file);
   await luthier("bake", "materials/polished-gold.toml", "materials/red-lacquer.toml", "materials/copper-patina.toml", "materials/car-paint.toml", "--out", plain, ...BAKE);
   await luthier("bake", "materials/textured", "--no-fit", "--out", board, ...BAKE);
   await luthier("bake", "materials/papers/granier-film.toml", "--out", film, ...BAKE);
@@ -157,26 +136,22 @@ async function cases() {
   ];
   for (const [name, material, bake, lights] of all) {
     const lamps = lights.map(({ direction, position }) => (position ? `--point-light=${position}` : `--light=${direction}`));
-    await luthier("preview", material, "--out", bake, "-o", path.join(out, `${name}-preview.png`), ...PREVIEW, ...lamps, "--environment", path.join(out, "black.hdr"), "--environment-samples", "1");
+    await preview(material, bake, file(`${name}-preview.png`), [...lamps, ...DARK]);
   }
   return all;
 }
 
 async function balls(renderer, all) {
-  const picture = (name) => path.join(out, `${name}-${RENDERERS[renderer].name}.png`);
+  const picture = (name) => file(`${name}-${RENDERERS[renderer].name}.png`);
   // Where there are fewer bits than a picture of 8 bits needs, it is drawn in half floats.
   const hdr = renderer.endsWith("Mobile");
-  const list = all.map(([name, material, bake, lights, more]) => ({ ...BALL, bake, material, lights, hdr, picture: picture(name), ...more }));
+  const list = all.map(([name, material, bake, lights, more]) => ({ ...SCENE, bake, material, lights, hdr, picture: picture(name), ...more }));
   const [, , plain] = all[0];
   list.push({ ...list[2], kind: "lamps", hdr: true });
   if (renderer !== "Godot 3.6") list.push({ ...list[8], kind: "saved", folder: path.join(RENDERERS[renderer].project, "saved"), picture: picture("saved-brass") });
   const said = await draw(renderer, list);
   console.log(said.match(/driver: .*/)?.[0]);
-  for (const [name] of all) {
-    const { median, p95, p99, most, pixels } = await difference(path.join(out, `${name}-preview.png`), picture(name));
-    // A texture that is misread makes 5 or more in the 95 %.
-    check(median <= 2 && p95 <= 3, `${name} by ${renderer} against preview: median ${median} of 255, 95 % within ${p95}, 99 % within ${p99}, largest ${most}, ${pixels} pixels`);
-  }
+  for (const [name] of all) await compare(name, renderer, file(`${name}-preview.png`), picture(name));
   const { off, ...lamps } = JSON.parse(said.match(/lamps: (.*)/)[1]);
   for (const [kind, [lit, shadowed]] of Object.entries(lamps)) {
     check(lit > 1000 && shadowed > 100, `a ${kind} lamp by ${renderer}: ${lit} pixels lit, ${shadowed} of them in its shadow`);
@@ -191,15 +166,15 @@ async function balls(renderer, all) {
 async function wrong() {
   const all = [];
   const add = async (word, options, change) => {
-    const bake = path.join(out, `wrong-${all.length}`);
+    const bake = file(`wrong-${all.length}`);
     await rm(bake, { recursive: true, force: true });
     await luthier("bake", "materials/polished-gold.toml", "--no-fit", "--quiet", "--out", bake, ...options);
     await change?.(bake);
     all.push([word, bake]);
   };
   const manifest = (change) => async (bake) => {
-    const file = path.join(bake, "manifest.json");
-    await writeFile(file, change(await readFile(file, "utf8")));
+    const manifest = path.join(bake, "manifest.json");
+    await writeFile(manifest, change(await readFile(manifest, "utf8")));
   };
   const surface = ["--functions", "surface"];
   await add("--functions surface", []);
@@ -214,7 +189,7 @@ async function wrong() {
 }
 
 async function refusals(renderer, all) {
-  const said = await draw(renderer, all.map(([, bake]) => ({ ...BALL, bake, material: "polished-gold", lights: [], picture: path.join(out, "wrong.png"), hdr: false })));
+  const said = await draw(renderer, all.map(([, bake]) => ({ ...SCENE, bake, material: "polished-gold", lights: [], picture: file("wrong.png"), hdr: false })));
   for (const [word, bake] of all) {
     const reason = said.split("\n").find((line) => line.includes("ERROR: ") && line.includes(bake)) ?? "nothing";
     check(reason.includes(word), `a bake is refused by ${renderer}: ${reason.replace(/.*ERROR: /, "")}`);
@@ -226,7 +201,4 @@ const all = await cases();
 for (const renderer of Object.keys(RENDERERS)) await balls(renderer, all);
 const faulty = await wrong();
 for (const renderer of Object.keys(RENDERERS).filter((name) => /Compatibility|3.6/.test(name))) await refusals(renderer, faulty);
-if (failures.length) {
-  console.error(`${failures.length} failed:\n${failures.join("\n")}`);
-  process.exit(1);
-}
+finish();

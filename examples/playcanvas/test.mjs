@@ -7,45 +7,16 @@
 // Needs a Vulkan driver and `npm ci` in this folder. The environment variable LUTHIER names the program that bakes; by default cargo builds it. CHROMIUM
 // names the browser.
 
-import { execFile } from "node:child_process";
-import { mkdir, readFile, writeFile } from "node:fs/promises";
+import { readFile, writeFile } from "node:fs/promises";
 import path from "node:path";
-import { promisify } from "node:util";
-import { difference, isLit } from "../web/difference.mjs";
-
-const here = import.meta.dirname;
-const root = path.join(here, "../..");
-const out = process.argv[2] && path.resolve(process.argv[2]);
-if (!out) {
-  console.error("usage: node test.mjs OUT");
-  process.exit(2);
-}
-await mkdir(out, { recursive: true });
-
-const call = async (program, args) => (await promisify(execFile)(program, args, { cwd: root, maxBuffer: 1 << 26 })).stdout;
-const CARGO = ["run", "--locked", "--quiet", "-p", "luthier-cli", "--bin", "luthier", "--"];
-const luthier = (...args) => (process.env.LUTHIER ? call(process.env.LUTHIER, args) : call("cargo", [...CARGO, ...args]));
-const failures = [];
-const check = (holds, words) => {
-  console.log(`${holds ? "holds" : "FAILS"}: ${words}`);
-  if (!holds) failures.push(words);
-};
+import { difference } from "../web/difference.mjs";
+import { BALL, DARK, LAMP, check, compare, file, finish, luthier, paints, preview, show } from "../web/workshop.mjs";
 
 /** A page of this folder with a bake and a description; its figures. */
-async function page(html, bake, description, name) {
-  const scene = path.join(out, `${name}.json`);
-  await writeFile(scene, JSON.stringify(description));
-  return call("node", [path.join(root, "examples/browser.mjs"), path.join(here, html), bake, scene, path.join(out, `${name}.png`)]);
-}
+const page = (html, ...rest) => show(path.join(import.meta.dirname, html), ...rest);
 
 const BAKED = ["--target", "wgsl,glsl-es300", "--form", "baked", "--quiet", "--functions"];
 const DEVICES = ["webgl2", "webgpu"];
-
-/** The camera of `preview --shape sphere`, 7 away, and its lamps, which have a size. */
-const LAMP = [1.75, 1.7, 1.62];
-const BALL = { size: 256, fov_y_deg: (360 / Math.PI) * Math.atan(1.22 / 7), eye_distance: 7, slope_variance: 0.05 ** 2 / 8, background: [0, 0, 0] };
-const PREVIEW = ["--shape", "sphere", "--size", "256", "--samples", "1", "--tone", "none", "--light-color", LAMP.join(), "--background"];
-const DARK = ["--environment", path.join(out, "black.hdr"), "--environment-samples", "1"];
 
 /** White that scatters all directions alike. */
 const ALBEDO = 0.8;
@@ -60,11 +31,7 @@ albedo = [${ALBEDO}, ${ALBEDO}, ${ALBEDO}]
 `;
 
 async function balls() {
-  // Two texels of no light, and of a radiance of one half.
-  const even = (byte) => Buffer.concat([Buffer.from("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n"), Buffer.alloc(8, byte)]);
-  await writeFile(path.join(out, "black.hdr"), even(0));
-  await writeFile(path.join(out, "grey.hdr"), even(128));
-  const [plain, lit, board, packed, film] = ["plain", "lit", "board", "packed", "film"].map((name) => path.join(out, name));
+  const [plain, lit, board, packed, film] = ["plain", "lit", "board", "packed", "film"].map(file);
   await luthier("bake", ...["polished-gold", "red-lacquer", "copper-patina"].map((name) => `materials/${name}.toml`), "--out", plain, ...BAKED, "surface");
   await luthier("bake", "materials/red-lacquer.toml", "--out", lit, ...BAKED, "surface,environment,albedo");
   await luthier("bake", "materials/textured", "--no-fit", "--out", board, ...BAKED, "surface");
@@ -72,7 +39,7 @@ async function balls() {
   // A limit on the error chooses texels of 10 bits.
   await luthier("bake", "materials/polished-gold.toml", "--no-fit", "--max-abs", "3e-3", "--out", packed, ...BAKED, "surface");
   check((await readFile(path.join(packed, "manifest.json"), "utf8")).includes('"format": "rgb10a2unorm"'), "a bake has texels of 10 bits");
-  await luthier("environment", "--sky", "strip-studio", "--layout", "cube", "--out", path.join(out, "studio"));
+  await luthier("environment", "--sky", "strip-studio", "--layout", "cube", "--out", file("studio"));
 
   const far = { lights: [{ direction: [0.5, 0.7, 0.6], irradiance: LAMP }] };
   const near = { lights: [{ position: [1, 1.5, 2], irradiance: LAMP }] };
@@ -83,7 +50,7 @@ async function balls() {
     ["lacquer", "red-lacquer", plain, far, [...from, ...DARK]],
     ["near-lacquer", "red-lacquer", plain, near, [...at, ...DARK]],
     ["lit-lacquer", "red-lacquer", lit, { lights: [], slope_variance: 0, environment: "studio/environment.json" }, ["--sky", "strip-studio"]],
-    ["even-lacquer", "red-lacquer", lit, { lights: [], ambient: [0.5, 0.5, 0.5] }, ["--environment", path.join(out, "grey.hdr")]],
+    ["even-lacquer", "red-lacquer", lit, { lights: [], ambient: [0.5, 0.5, 0.5] }, ["--environment", file("grey.hdr")]],
     ["patina", "copper-patina", plain, far, [...from, ...DARK]],
     ["film", "granier-film", film, far, [...from, ...DARK]],
     ["brass", "worn-brass", board, far, [...from, ...DARK]],
@@ -91,28 +58,24 @@ async function balls() {
     ["tile", "celadon-tile", board, far, [...from, ...DARK]],
   ];
   for (const [name, material, bake, scene, options] of cases) {
-    const expected = path.join(out, `${name}-preview.png`);
-    await luthier("preview", material, "--out", bake, "-o", expected, ...PREVIEW, ...options);
+    const expected = file(`${name}-preview.png`);
+    await preview(material, bake, expected, options);
     for (const device of DEVICES) {
       await page("index.html", bake, { ...BALL, ...scene, device, material }, `${name}-${device}`);
-      // Behind the ball there is the environment in one, and nothing in the other.
-      const shown = options.includes("--environment-samples") ? undefined : (_, pixel) => isLit(pixel);
-      const { median, p95, p99, most, pixels } = await difference(expected, path.join(out, `${name}-${device}.png`), shown);
-      // A texture that is misread makes 5 or more in the 95 %.
-      check(median <= 2 && p95 <= 3, `${name} by ${device} against preview: median ${median} of 255, 95 % within ${p95}, 99 % within ${p99}, largest ${most}, ${pixels} pixels`);
+      await compare(name, device, expected, file(`${name}-${device}.png`), options);
     }
   }
 
   // A tone curve of PlayCanvas, on both devices; without it the pictures are others.
-  const toned = (device) => path.join(out, `toned-${device}.png`);
+  const toned = (device) => file(`toned-${device}.png`);
   for (const device of DEVICES) await page("index.html", plain, { ...BALL, ...far, device, material: "red-lacquer", tone: "TONEMAP_ACES" }, `toned-${device}`);
-  const [same, other] = [await difference(...DEVICES.map(toned)), await difference(toned("webgl2"), path.join(out, "lacquer-webgl2.png"))];
+  const [same, other] = [await difference(...DEVICES.map(toned)), await difference(toned("webgl2"), file("lacquer-webgl2.png"))];
   check(same.p99 <= 1 && other.median > 5, `a tone curve: ${same.p99} of 255 between the devices (99 %), ${other.median} against none (median)`);
   return plain;
 }
 
 async function units() {
-  const bake = path.join(out, "chalk");
+  const bake = file("chalk");
   await writeFile(`${bake}.toml`, CHALK);
   await luthier("bake", `${bake}.toml`, "--out", bake, ...BAKED, "surface,albedo");
   for (const device of DEVICES) {
@@ -140,33 +103,9 @@ async function lamps(bake) {
   }
 }
 
-/** A varnish over a metal or a paint. */
-const paint = (i) => {
-  const hue = (shift) => (0.5 + 0.4 * Math.cos(2 * Math.PI * (i / 55 + shift))).toFixed(3);
-  return `schema = 1
-name = "paint-${i}"
-description = "A varnished paint."
-references = []
-
-[[layer]]
-type = "dielectric"
-ior = 1.5
-roughness = ${(0.1 + 0.005 * i).toFixed(3)}
-
-[[layer]]
-type = "metallic-roughness"
-base_color = [${hue(0)}, ${hue(1 / 3)}, ${hue(2 / 3)}]
-metallic = ${i % 2}.0
-roughness = ${(0.3 + 0.01 * i).toFixed(2)}
-`;
-};
-
 async function sixty() {
-  const paints = path.join(out, "paints");
-  await mkdir(paints, { recursive: true });
-  for (let i = 0; i < 55; i++) await writeFile(path.join(paints, `paint-${i}.toml`), paint(i));
-  const bake = path.join(out, "sixty");
-  await luthier("bake", paints, "materials/textured", "--no-fit", "--out", bake, ...BAKED, "surface");
+  const bake = file("sixty");
+  await luthier("bake", await paints(), "materials/textured", "--no-fit", "--out", bake, ...BAKED, "surface");
   for (const device of DEVICES) {
     const { materials, programs, first_ms, frame_ms } = JSON.parse(await page("test.html", bake, { device, scene: "set", size: 512 }, `sixty-${device}`));
     check(materials === 60 && programs === 1, `${materials} materials by ${device}, ${programs} program: first frame ${first_ms} ms, then ${frame_ms} ms a frame of 512 x 512`);
@@ -175,7 +114,7 @@ async function sixty() {
 
 /** Bakes that the loader refuses, and a word of the reason. */
 async function refusals(plain) {
-  const bake = path.join(out, "refused");
+  const bake = file("refused");
   const gold = ["bake", "materials/polished-gold.toml", "--no-fit", "--quiet", "--out", bake];
   const scene = { ...BALL, device: "webgl2", lights: [], material: "polished-gold" };
   const refused = async (word, folder, more) => {
@@ -183,8 +122,8 @@ async function refusals(plain) {
     check(said.includes(word), `${more?.material ?? more?.environment ?? "a bake"} is refused: ${said.match(/Error: (.*)/)?.[1] ?? said}`);
   };
   const changed = async (word, change) => {
-    const file = path.join(bake, "manifest.json");
-    await writeFile(file, change(await readFile(file, "utf8")));
+    const manifest = path.join(bake, "manifest.json");
+    await writeFile(manifest, change(await readFile(manifest, "utf8")));
     await refused(word, bake);
   };
   await luthier(...gold);
@@ -204,7 +143,4 @@ await units();
 await lamps(plain);
 await sixty();
 await refusals(plain);
-if (failures.length) {
-  console.error(`${failures.length} failed:\n${failures.join("\n")}`);
-  process.exit(1);
-}
+finish();
