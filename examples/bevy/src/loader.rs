@@ -102,7 +102,7 @@ impl AssetLoader for LuthierLoader {
             .map_err(|_| LuthierError::Text(shader.file.path.clone()))?;
         let interface = shader.interface.clone().unwrap_or_default();
         let surface = Surface::new(&manifest, &interface, &text)?;
-        let wgsl = program(&text, &manifest.functions, &surface);
+        let wgsl = program(&text, &surface);
         let shader = context.add_labeled_asset("shader", Shader::from_wgsl(wgsl, format!("{}#shader", context.path())));
 
         let mut tables = HashMap::new();

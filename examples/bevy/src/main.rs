@@ -20,7 +20,7 @@ use bevy::render::RenderPlugin;
 use bevy::render::render_resource::TextureFormat;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy::window::ExitCondition;
-use luthier_bevy::{LuthierBake, LuthierMaterial, LuthierPlugin, LuthierSettings};
+use luthier_bevy::{LuthierBake, LuthierEnvironment, LuthierMaterial, LuthierPlugin, LuthierSettings};
 use serde::Deserialize;
 
 /// Frames drawn before the picture is taken: a material shows once its textures, buffer and shader are on the device.
@@ -47,6 +47,11 @@ struct Description {
     slope_variance: f32,
     /// Distance at which fog hides half.
     fog: Option<f32>,
+    /// Radiance of even light from all around.
+    #[serde(default)]
+    ambient: f32,
+    /// Folder of `luthier environment --layout cube`.
+    environment: Option<PathBuf>,
 }
 
 /// A lamp far away, or at a position, whose irradiance is that at the centre.
@@ -114,7 +119,7 @@ fn start() -> Result<AppExit> {
                 }),
         )
         .add_plugins((ScheduleRunnerPlugin::run_loop(Duration::ZERO), LuthierPlugin))
-        .insert_resource(GlobalAmbientLight { brightness: 0.0, ..default() })
+        .insert_resource(GlobalAmbientLight { brightness: description.ambient, ..default() })
         .insert_resource(description)
         .insert_resource(Orders { bake, pictures, current: 0, shown: 0, waited: 0 })
         .add_systems(Startup, setup)
@@ -128,6 +133,11 @@ fn setup(scene: Res<Description>, server: Res<AssetServer>, mut commands: Comman
     let bake = server.load_builder().with_settings(plain).load("manifest.json");
     for lamp in &scene.lights {
         spawn(&mut commands, lamp);
+    }
+    if let Some(folder) = &scene.environment {
+        let [environment, irradiance] =
+            ["environment-cube.ktx2", "irradiance-cube.ktx2"].map(|name| server.load(folder.join(name)));
+        commands.insert_resource(LuthierEnvironment { environment, irradiance });
     }
 
     let target = images.add(Image::new_target_texture(scene.size, scene.size, TextureFormat::Rgba8UnormSrgb, None));
@@ -224,6 +234,7 @@ fn prepare(
 fn take_pictures(
     mut orders: ResMut<Orders>,
     stage: Res<Stage>,
+    environment: Option<Res<LuthierEnvironment>>,
     server: Res<AssetServer>,
     mut came: MessageReader<AssetEvent<LuthierBake>>,
     mut commands: Commands,
@@ -243,9 +254,11 @@ fn take_pictures(
         return Ok(());
     }
     let is_there = came.read().any(|event| matches!(event, AssetEvent::LoadedWithDependencies { .. }));
+    let is_lit =
+        environment.is_none_or(|around| server.is_loaded(&around.environment) && server.is_loaded(&around.irradiance));
     if is_there {
         orders.shown = 1;
-    } else if orders.shown > 0 {
+    } else if orders.shown > 0 && is_lit {
         orders.shown += 1;
     }
     if orders.shown == FRAMES {

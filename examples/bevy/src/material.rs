@@ -119,9 +119,9 @@ impl Material for LuthierMaterial {
 /// Light from all around, of `luthier environment --layout cube`, for all materials. It needs bakes with `--functions surface,environment`.
 #[derive(Resource, Debug, Clone, Default)]
 pub struct LuthierEnvironment {
-    /// `environment.ktx2`, blurred levels of the surroundings.
+    /// `environment-cube.ktx2`, blurred levels of the surroundings.
     pub environment: Handle<Image>,
-    /// `irradiance.ktx2`.
+    /// `irradiance-cube.ktx2`.
     pub irradiance: Handle<Image>,
 }
 

@@ -1,11 +1,10 @@
 //! The shader of a bake for Bevy: `lit.wgsl` around the text of the bake.
 
-use luthier_manifest::{FunctionGroup, Functions};
-
 use crate::surface::Surface;
 
 /// The text that Bevy compiles.
-pub fn program(text: &str, functions: &Functions, surface: &Surface) -> String {
+pub fn program(text: &str, surface: &Surface) -> String {
+    let has = |name: &str| text.contains(&format!("fn {name}("));
     let reads = (0..surface.width).map(|i| {
         let kind = format!("luthier_numbers.kinds[{}][{}]", i / 4, i % 4);
         let at = format!("luthier_at({kind}, {i}u, uv, textureDimensions(luthier_map_{i}))");
@@ -13,16 +12,16 @@ pub fn program(text: &str, functions: &Functions, surface: &Surface) -> String {
             format!("luthier_numbers.factors[{i}].rgb * textureSample(luthier_map_{i}, luthier_map_sampler, {at}).rgb");
         format!("base = luthier_texel(material, {kind}, distance, {texel}, base);\n")
     });
-    let light = if functions.has(FunctionGroup::Surface) && text.contains("fn luthier_light_lit(") {
+    let light = if has("luthier_light_lit") {
         "return luthier_light_lit(luthier_prepared, direction * luthier_frame, color);"
     } else {
         "return color * luthier_light(luthier_prepared, direction * luthier_frame);"
     };
     let mut around = String::new();
-    if functions.has(FunctionGroup::Albedo) {
+    if has("luthier_albedo") {
         around += "radiance += lights.ambient_color.rgb * luthier_albedo(luthier_prepared);\n";
     }
-    if text.contains("fn luthier_environment(") {
+    if has("luthier_environment") {
         // The environment is in radiance, and lamps are in the units of Bevy.
         around += "if luthier_numbers.has_environment != 0u { radiance += luthier_environment(luthier_prepared, luthier_frame, 0.0) / view.exposure; }\n";
     }

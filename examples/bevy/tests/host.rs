@@ -1,7 +1,7 @@
 //! Bevy draws bakes: `cargo test --test host -- OUT [PART...]` leaves its pictures in the folder OUT (by default target/bevy). Parts are balls, lamps, anew
 //! and refusals; by default all.
 //!
-//! - Balls against `luthier preview`: plain and textured materials under a lamp far away and near.
+//! - Balls against `luthier preview`: plain and textured materials under a lamp far away and near, in an environment and in even light.
 //! - Three kinds of lamps with shadows, a spot's cone, fog.
 //! - A bake that is written anew is shown.
 //! - Wrong bakes are named.
@@ -77,8 +77,7 @@ impl Host {
     fn bake(&self, name: &str, materials: &[&str], functions: &str) -> String {
         let folder = self.at(name);
         let _ = fs::remove_dir_all(&folder);
-        let options =
-            ["--out", &folder, "--target", "wgsl", "--form", "baked", "--no-fit", "--quiet", "--functions", functions];
+        let options = ["--out", &folder, "--target", "wgsl", "--form", "baked", "--quiet", "--functions", functions];
         self.luthier(&[&["bake"], materials, &options].concat());
         folder
     }
@@ -100,52 +99,57 @@ impl Host {
 
     /// The picture of `luthier preview` of the ball.
     fn preview(&self, bake: &str, material: &str, light: &[&str], name: &str) -> RgbImage {
-        let (png, black) = (self.at(name), self.at("black.hdr"));
-        let mut dark = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n".to_vec();
-        dark.extend([0; 8]);
-        fs::write(&black, dark).unwrap();
-        let color = LAMP.map(|value| value.to_string()).join(",");
-        let ball = [
-            "preview",
-            material,
-            "--out",
-            bake,
-            "-o",
-            &png,
-            "--shape",
-            "sphere",
-            "--size",
-            "256",
-            "--samples",
-            "1",
-            "--tone",
-            "none",
-        ];
-        let dark = ["--light-color", &color, "--background", "--environment", &black, "--environment-samples", "1"];
-        self.luthier(&[&ball[..], &dark, light].concat());
+        let (png, color) = (self.at(name), LAMP.map(|value| value.to_string()).join(","));
+        let ball = ["preview", material, "--out", bake, "-o", &png, "--shape", "sphere", "--size", "256"];
+        let plain = ["--samples", "1", "--tone", "none", "--light-color", &color, "--background"];
+        self.luthier(&[&ball[..], &plain, light].concat());
         read(&png)
+    }
+
+    /// A map of one radiance, which a byte states: 0, or one half for 128.
+    fn even(&self, name: &str, byte: u8) -> String {
+        let file = self.at(name);
+        let mut map = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n".to_vec();
+        map.extend([byte; 8]);
+        fs::write(&file, map).unwrap();
+        file
     }
 
     fn balls(&self) {
         let plain = ["materials/polished-gold.toml", "materials/red-lacquer.toml", "materials/copper-patina.toml"];
         let plain = self.bake("plain", &plain, "surface");
-        let board = self.bake("board", &["materials/textured"], "surface");
+        let lit = self.bake("lit", &["materials/red-lacquer.toml"], "surface,environment,albedo");
+        let board = self.bake("board", &["materials/textured", "--no-fit"], "surface");
         let film = self.bake("film", &["materials/papers/granier-film.toml"], "surface");
-        let far = (json!([{ "direction": [0.5, 0.7, 0.6], "irradiance": LAMP }]), ["--light", "0.5,0.7,0.6"]);
-        let near = (json!([{ "position": [1.0, 1.5, 2.0], "irradiance": LAMP }]), ["--point-light", "1,1.5,2"]);
+        let studio = self.at("studio");
+        self.luthier(&["environment", "--sky", "strip-studio", "--layout", "cube", "--out", &studio]);
+        let (black, grey) = (self.even("black.hdr", 0), self.even("grey.hdr", 128));
+
+        let far = json!({ "lights": [{ "direction": [0.5, 0.7, 0.6], "irradiance": LAMP }] });
+        let near = json!({ "lights": [{ "position": [1.0, 1.5, 2.0], "irradiance": LAMP }] });
+        let around = json!({ "lights": [], "environment": studio, "slope_variance": 0.0 });
+        let even = json!({ "lights": [], "ambient": 0.5, "slope_variance": 0.0 });
+        let dark = ["--environment", &black, "--environment-samples", "1"];
+        let from = [&dark[..], &["--light", "0.5,0.7,0.6"]].concat();
+        let at = [&dark[..], &["--point-light", "1,1.5,2"]].concat();
+        let sky = vec!["--sky", "strip-studio"];
+        let half = vec!["--environment", &grey];
         let cases = [
-            ("gold", "polished-gold", &plain, &far),
-            ("lacquer", "red-lacquer", &plain, &far),
-            ("near-lacquer", "red-lacquer", &plain, &near),
-            ("patina", "copper-patina", &plain, &far),
-            ("film", "granier-film", &film, &far),
-            ("brass", "worn-brass", &board, &far),
-            ("tile", "celadon-tile", &board, &far),
+            ("gold", "polished-gold", &plain, &far, &from),
+            ("lacquer", "red-lacquer", &plain, &far, &from),
+            ("near-lacquer", "red-lacquer", &plain, &near, &at),
+            ("lit-lacquer", "red-lacquer", &lit, &around, &sky),
+            ("even-lacquer", "red-lacquer", &lit, &even, &half),
+            ("patina", "copper-patina", &plain, &far, &from),
+            ("film", "granier-film", &film, &far, &from),
+            ("brass", "worn-brass", &board, &far, &from),
+            ("tile", "celadon-tile", &board, &far, &from),
         ];
-        for (name, material, bake, (lights, options)) in cases {
+        for (name, material, bake, light, options) in cases {
             let expected = self.preview(bake, material, options, &format!("{name}-preview.png"));
-            let shown = self.picture(bake, &scene(material, lights), &format!("{name}.png"));
-            let Apart { median, p95, p99, most, pixels } = apart(&expected, &shown);
+            let shown = self.picture(bake, &scene(material, light), &format!("{name}.png"));
+            // Behind the ball there is the environment in one, and nothing in the other.
+            let Apart { median, p95, p99, most, pixels } = apart(&expected, &shown, options.starts_with(&dark));
             // A texture that is misread makes 5 or more in the 95 %.
             self.check(
                 median <= 2 && p95 <= 3,
@@ -155,9 +159,9 @@ impl Host {
     }
 
     fn lamps(&self) {
-        let bake = self.bake("lamps", &["materials/red-lacquer.toml"], "surface");
+        let bake = self.bake("lamps", &["materials/red-lacquer.toml", "--no-fit"], "surface");
         let lit = |lamp: Value| {
-            let mut scene = scene("red-lacquer", &json!([lamp]));
+            let mut scene = scene("red-lacquer", &json!({ "lights": [lamp] }));
             scene["floor"] = json!("red-lacquer");
             scene
         };
@@ -195,7 +199,7 @@ impl Host {
             format!("a spot is a lamp within its cone: {outside} pixels outside, {inside} inside, {other} of these differ by more than 1"),
         );
 
-        let mut thick = scene("red-lacquer", &json!([{ "direction": up, "irradiance": LAMP }]));
+        let mut thick = scene("red-lacquer", &json!({ "lights": [{ "direction": up, "irradiance": LAMP }] }));
         thick["fog"] = json!(0.01);
         thick["background"] = json!([0.2, 0.3, 0.4]);
         let hidden = self.picture(&bake, &thick, "fog.png");
@@ -206,19 +210,19 @@ impl Host {
 
     /// The folder of a bake gets the files of another, whose material of the name is another.
     fn written_anew(&self) {
-        let work = self.bake("anew", &["materials/red-lacquer.toml"], "surface");
+        let work = self.bake("anew", &["materials/red-lacquer.toml", "--no-fit"], "surface");
         let text = fs::read_to_string(self.root.join("materials/red-lacquer.toml")).unwrap();
         let green = swap_colours(&text);
         let file = self.at("green/red-lacquer.toml");
         fs::create_dir_all(self.out.join("green")).unwrap();
         fs::write(&file, green).unwrap();
-        let other = self.bake("other", &[&file], "surface");
-        let far = json!([{ "direction": [0.5, 0.7, 0.6], "irradiance": LAMP }]);
+        let other = self.bake("other", &[&file, "--no-fit"], "surface");
+        let far = json!({ "lights": [{ "direction": [0.5, 0.7, 0.6], "irradiance": LAMP }] });
         let expected = self.picture(&other, &scene("red-lacquer", &far), "other.png");
         let (before, after) = (self.at("anew-before.png"), self.at("anew-after.png"));
         let output = self.show(&work, &scene("red-lacquer", &far), &[&before, &other, &after]);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let (before, after) = (apart(&expected, &read(&before)), apart(&expected, &read(&after)));
+        let (before, after) = (apart(&expected, &read(&before), true), apart(&expected, &read(&after), true));
         self.check(
             before.median > 5 && after.most <= 1,
             format!(
@@ -233,7 +237,8 @@ impl Host {
         let folder = self.at("refused");
         let gold = ["bake", "materials/polished-gold.toml", "--no-fit", "--quiet", "--form", "baked", "--out", &folder];
         let refused = |word: &str| {
-            let output = self.show(&folder, &scene("polished-gold", &json!([])), &[&self.at("refused.png")]);
+            let output =
+                self.show(&folder, &scene("polished-gold", &json!({ "lights": [] })), &[&self.at("refused.png")]);
             let said = String::from_utf8_lossy(&output.stderr).into_owned();
             let error = said.lines().rfind(|line| line.starts_with("error: ")).unwrap_or("nothing");
             self.check(!output.status.success() && error.contains(word), format!("a bake is refused: {error}"));
@@ -258,14 +263,16 @@ impl Host {
     }
 }
 
-/// The ball of `preview --shape sphere` with the camera 7 away; its lamps have a size.
-fn scene(material: &str, lights: &Value) -> Value {
+/// The ball of `preview --shape sphere` with the camera 7 away, in light that may state more. Lamps have a size.
+fn scene(material: &str, light: &Value) -> Value {
     let fov_y_deg = 2.0 * (1.22_f64 / 7.0).atan().to_degrees();
     let slope_variance = 0.05 * 0.05 / 8.0;
-    json!({
+    let mut scene = json!({
         "size": 256, "fov_y_deg": fov_y_deg, "eye_distance": 7.0, "background": [0.0, 0.0, 0.0],
-        "material": material, "lights": lights, "slope_variance": slope_variance,
-    })
+        "material": material, "slope_variance": slope_variance,
+    });
+    scene.as_object_mut().unwrap().extend(light.as_object().unwrap().clone());
+    scene
 }
 
 /// The file with red and green exchanged in every list of three numbers.
@@ -290,10 +297,10 @@ struct Apart {
     pixels: usize,
 }
 
-/// Differences of the channels that are farthest, of pixels that are lit in either.
-fn apart(a: &RgbImage, b: &RgbImage) -> Apart {
+/// Differences of the channels that are farthest, of pixels that are lit in the second, or in either.
+fn apart(a: &RgbImage, b: &RgbImage, in_either: bool) -> Apart {
     assert_eq!(a.dimensions(), b.dimensions());
-    let lit = a.pixels().zip(b.pixels()).filter(|(p, q)| bright(p) > 0 || bright(q) > 0);
+    let lit = a.pixels().zip(b.pixels()).filter(|(p, q)| bright(q) > 0 || in_either && bright(p) > 0);
     let mut steps: Vec<u8> = lit.map(|(p, q)| (0..3).map(|c| p.0[c].abs_diff(q.0[c])).max().unwrap_or(0)).collect();
     steps.sort_unstable();
     let pixels = steps.len();
