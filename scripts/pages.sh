@@ -64,7 +64,14 @@ families-plastic() { luthier-lab families --group plastic --group tinted --group
 # By its name only: the first group with the noise of other pages.
 families-metal() { luthier-lab families --group metal --noise 0.005 -o docs/pages/families-metal.md; }
 coats() { luthier-lab coats --noise 0.005 -o docs/pages/coats.md; }
-formats() { luthier-lab formats materials -o docs/pages/formats.md; }
+# Of the materials of papers those that `materials` lacks.
+formats() {
+  local papers=(acrylic-lacquer blue-metallic-paint brass-foil ceramic-glaze chromium-car-paint gold-metallic-paint granier-{film,iridescent} silver-paint sugar yamaguchi-{aligned,brushed})
+  local files=("${papers[@]/#/materials/papers/}")
+  luthier-lab formats materials "${files[@]/%/.toml}" materials/textured/board -o docs/pages/formats.md
+}
+# By its name only: wants npm and Blender.
+exported() { LUTHIER=${LUTHIER:?names the program} scripts/formats.sh docs/pages; }
 # By its name only: wants what the hosts want, and half an hour.
 hosts() { LUTHIER=${LUTHIER:?names the program} scripts/hosts.sh >docs/pages/hosts.md; }
 five-ways() { luthier-lab five-ways -o docs/pages/five-ways.md; }

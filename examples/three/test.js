@@ -1,9 +1,10 @@
 // Scenes of test.mjs. They are drawn into textures of linear 32-bit floats, so that figures are of light.
 
+import { car } from "./car.js";
 import { driver, open, png, run } from "./page.js";
 
 const SIZE = 256;
-const SCENES = { lights, moved, set };
+const SCENES = { lights, moved, driven };
 
 run(async ({ renderer: kind, scene, ...rest }) => {
   const host = await open(kind, SIZE);
@@ -119,23 +120,25 @@ async function moved({ THREE, bake, renderer, isGpu }) {
   return { pixels, figures: { off, lit: count(meshes, (value) => value > 1e-3) } };
 }
 
-/** A part for each material of the bake. */
-async function set({ THREE, bake, renderer, isGpu }) {
+/** A car, each part of which has a material of its own. */
+async function driven({ THREE, bake, renderer, isGpu }) {
   const size = 512;
   renderer.setSize(size, size);
   const scene = new THREE.Scene();
-  const geometry = new THREE.SphereGeometry(0.48, 48, 24);
-  const columns = Math.ceil(Math.sqrt(bake.names.length));
-  bake.names.forEach((name, i) => {
-    const mesh = new THREE.Mesh(geometry, bake.material(name));
-    mesh.position.set((i % columns) - (columns - 1) / 2, (columns - 1) / 2 - Math.floor(i / columns), 0);
-    scene.add(mesh);
-  });
-  const lamp = new THREE.DirectionalLight(0xffffff, 3);
-  lamp.position.set(1, 2, 3);
-  scene.add(lamp);
-  const camera = new THREE.OrthographicCamera(-columns / 2, columns / 2, columns / 2, -columns / 2, 0.1, 20);
-  camera.position.z = 10;
+  const body = new THREE.Group();
+  const { large, small } = car(THREE);
+  const plain = bake.names.filter((name) => !(name in large));
+  const parts = [...Object.entries(large), ...small.map((geometry, i) => [plain[i], geometry])];
+  for (const [name, geometry] of parts) body.add(new THREE.Mesh(geometry, bake.material(name)));
+  scene.add(body);
+  for (const [color, ...at] of [[0xffffff, 1, 3, 3], [0x88aaff, 4, 2, -1]]) {
+    const lamp = new THREE.DirectionalLight(color, 3);
+    lamp.position.set(...at);
+    scene.add(lamp);
+  }
+  const camera = new THREE.PerspectiveCamera(27, 1, 0.1, 40);
+  camera.position.set(6.5, 3.5, 8.5);
+  camera.lookAt(0.2, 0.7, 0);
   const shoot = exposure(THREE, renderer, isGpu, scene, camera, size);
   const start = performance.now();
   let pixels = await shoot();
@@ -143,11 +146,11 @@ async function set({ THREE, bake, renderer, isGpu }) {
   const frames = 10;
   const again = performance.now();
   for (let i = 0; i < frames; i++) {
-    scene.rotation.y = 0.01 * i;
+    body.rotation.y = 0.01 * i;
     pixels = await shoot();
   }
   const frame = (performance.now() - again) / frames;
-  return { pixels, figures: { materials: bake.names.length, programs: programs(renderer), first_ms: Math.round(first), frame_ms: Math.round(frame) } };
+  return { pixels, figures: { parts: new Set(parts.map(([name]) => name)).size, lit: count(pixels, (value) => value > 1e-3), programs: programs(renderer), first_ms: Math.round(first), frame_ms: Math.round(frame) } };
 }
 
 /** A function that draws, and returns linear RGBA from the top row down. */
