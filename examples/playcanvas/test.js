@@ -5,7 +5,7 @@ import { LuthierHandler } from "luthier-playcanvas";
 import { add, driver, exposure, mesh, open, png, run } from "./page.js";
 
 const SIZE = 256;
-const SCENES = { lights, units, set };
+const SCENES = { lights, units, moved, set };
 
 run(async ({ device: kind, scene, ...rest }) => {
   const app = await open(kind, rest.size ?? SIZE);
@@ -104,6 +104,52 @@ async function units(app, bake, { albedo }) {
   const lit = theirs.filter((value, i) => i % 4 < 3 && value > 0);
   const off = pixels.map((value, i) => Math.abs(value - theirs[i])).filter((_, i) => i % 4 < 3 && theirs[i] > 0).sort()[Math.floor(0.99 * lit.length)];
   return { pixels, figures: { off, largest: theirs.reduce((most, value, i) => (i % 4 < 3 ? Math.max(most, value) : most), 0) } };
+}
+
+/** Balls that instances, a bone and a morph target move, against balls at the same places. */
+async function moved(app, bake) {
+  const device = app.graphicsDevice;
+  app.scene.ambientLight = pc.Color.BLACK;
+  const lamp = add(app, "light", { type: "directional", intensity: 1 });
+  lamp.setRotation(new pc.Quat().setFromDirections(pc.Vec3.UP, new pc.Vec3(1, 2, 3).normalize()));
+  const camera = add(app, "camera", { ...LINEAR, projection: pc.PROJECTION_ORTHOGRAPHIC, orthoHeight: 1.5, nearClip: 0.1, farClip: 20 }, [0, 0, 10]);
+  const shoot = exposure(app, camera, SIZE, pc.PIXELFORMAT_RGBA32F);
+  const ball = () => new pc.SphereGeometry({ radius: 0.45, latitudeBands: 24, longitudeBands: 48 });
+  const material = bake.material("red-lacquer");
+  const part = (geometry, place) => {
+    const entity = mesh(app, geometry, material, place);
+    const [instance] = entity.render.meshInstances;
+    instance.cull = false;
+    return { entity, instance };
+  };
+
+  const instances = part(ball());
+  const matrices = new Float32Array([-1, 0, 1].flatMap((x) => [...new pc.Mat4().setTranslate(x, 0.5, 0).data]));
+  instances.instance.setInstancing(new pc.VertexBuffer(device, pc.VertexFormat.getDefaultInstancingFormat(device), 3, { data: matrices.buffer }));
+  const bent = ball();
+  const vertices = bent.positions.length / 3;
+  bent.blendIndices = Array(4 * vertices).fill(0);
+  bent.blendWeights = Array.from({ length: 4 * vertices }, (_, i) => Number(i % 4 === 0));
+  const skinned = part(bent);
+  const bone = new pc.Entity("bone", app);
+  bone.setPosition(-0.5, -0.5, 0);
+  app.root.addChild(bone);
+  const skin = new pc.SkinInstance(new pc.Skin(device, [new pc.Mat4()], ["bone"]));
+  skin.bones = [bone];
+  skinned.instance.skinInstance = skin;
+  const morphed = part(ball());
+  const deltaPositions = Float32Array.from({ length: 3 * vertices }, (_, i) => [0.5, -0.5, 0][i % 3]);
+  const morph = new pc.Morph([new pc.MorphTarget({ deltaPositions })], device);
+  morphed.instance.mesh.morph = morph;
+  morphed.instance.morphInstance = new pc.MorphInstance(morph);
+  morphed.instance.morphInstance.setWeight(0, 1);
+  const pixels = await shoot();
+
+  for (const { entity } of [instances, skinned, morphed]) entity.destroy();
+  for (const [x, y] of [[-1, 0.5], [0, 0.5], [1, 0.5], [-0.5, -0.5], [0.5, -0.5]]) part(ball(), [x, y, 0]);
+  const meshes = await shoot();
+  const off = pixels.reduce((off, value, i) => Math.max(off, Math.abs(value - meshes[i])), 0);
+  return { pixels, figures: { off, lit: count(meshes, (value) => value > 1e-3) } };
 }
 
 /** A part for each material of the bake. */

@@ -2,6 +2,7 @@
 // - Balls against `luthier preview`: plain and textured materials under one lamp, near a lamp, in an environment and in even light. A tone curve.
 // - Chalk against PlayCanvas' own white: the units of lamps and of ambient light.
 // - Three kinds of lamps with shadows, in clusters and, in WebGL, without, against sums of single ones. Fog.
+// - Instances, a skin and a morph target.
 // - Sixty materials, five of them with textures: one program.
 // - Wrong bakes are named.
 // Needs a Vulkan driver and `npm ci` in this folder. The environment variable LUTHIER names the program that bakes; by default cargo builds it. CHROMIUM
@@ -103,6 +104,13 @@ async function lamps(bake) {
   }
 }
 
+async function moved(bake) {
+  for (const device of DEVICES) {
+    const { off, lit } = JSON.parse(await page("test.html", bake, { device, scene: "moved" }, `moved-${device}`));
+    check(off < 1e-3 && lit > 10000, `instances, a skin and a morph target by ${device} are where meshes are: ${off.toExponential(1)} off, ${lit} pixels`);
+  }
+}
+
 async function sixty() {
   const bake = file("sixty");
   await luthier("bake", await paints(), "materials/textured", "--no-fit", "--out", bake, ...BAKED, "surface");
@@ -141,6 +149,7 @@ async function refusals(plain) {
 const plain = await balls();
 await units();
 await lamps(plain);
+await moved(plain);
 await sixty();
 await refusals(plain);
 finish();
