@@ -102,12 +102,17 @@ release() {
   rm -rf "$work"
 }
 examples() { released scripts/run-examples.sh; }
-c() { released scripts/c-host.sh; }
-bevy() { released scripts/bevy.sh; }
-babylon() { released scripts/babylon.sh; }
-playcanvas() { released scripts/playcanvas.sh; }
-materialx() { released scripts/materialx.sh; }
-godot() { released scripts/godot.sh; }
+# host NAME SCRIPT: what it says is what scripts/hosts.sh makes its page of.
+host() {
+  mkdir -p target/hosts
+  released "$2" | tee "target/hosts/$1.log"
+}
+c() { host c scripts/c-host.sh; }
+bevy() { host bevy scripts/bevy.sh; }
+babylon() { host babylon scripts/babylon.sh; }
+playcanvas() { host playcanvas scripts/playcanvas.sh; }
+materialx() { host materialx scripts/materialx.sh; }
+godot() { host godot scripts/godot.sh; }
 engines() { released scripts/engines/furnace.sh; }
 formats() { released scripts/formats.sh; }
 kind() { ./scripts/add-kind.sh && ./scripts/add-model.sh; }
