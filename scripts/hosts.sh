@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Runs the tests of the hosts in examples/ that draw bakes, and prints the page of their pictures beside those of `luthier preview`, docs/pages/hosts.md.
+# Runs the tests of the hosts in examples/ that draw bakes, and prints the page of their pictures beside those of `luthier preview`,
+# docs/pages/hosts.md; its picture is left as target/hosts/hosts.png.
 #   scripts/hosts.sh            all: half an hour on two cores
 #   scripts/hosts.sh HOST...    some; the page has the latest runs of the others, from target/hosts/
 #   scripts/hosts.sh --page     none: the page of the latest runs, those of nightly steps among them
@@ -33,4 +34,4 @@ for host in "${asked[@]}"; do
   esac >"$logs/$host.new"
   mv "$logs/$host.new" "$logs/$host.log"
 done
-for host in "${hosts[@]}"; do if [ -e "$logs/$host.log" ]; then echo "$logs/$host.log"; fi; done | xargs python3 scripts/hosts.py
+for host in "${hosts[@]}"; do if [ -e "$logs/$host.log" ]; then echo "$logs/$host.log"; fi; done | xargs python3 scripts/hosts.py "$logs/hosts.png"

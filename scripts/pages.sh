@@ -73,7 +73,10 @@ formats() {
 # By its name only: wants npm and Blender.
 exported() { LUTHIER=${LUTHIER:?names the program} scripts/formats.sh docs/pages; }
 # By its name only: wants what the hosts want, and half an hour.
-hosts() { LUTHIER=${LUTHIER:?names the program} scripts/hosts.sh >docs/pages/hosts.md; }
+hosts() {
+  LUTHIER=${LUTHIER:?names the program} scripts/hosts.sh >docs/pages/hosts.md
+  cp target/hosts/hosts.png docs/pages/hosts.png
+}
 five-ways() { luthier-lab five-ways -o docs/pages/five-ways.md; }
 varying() { luthier-lab varying --random 8 --noise 0.015 -o docs/pages/varying.md; }
 anisotropic() {
