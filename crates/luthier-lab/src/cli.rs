@@ -69,6 +69,8 @@ pub(crate) enum Verb {
     Layouts(LayoutsOptions),
     /// Take materials in `lobes` under several limits on errors, and predict what each costs: a page in Markdown
     Ladder(LadderOptions),
+    /// Draw the chart of a page of `ladder` anew
+    LadderChart(LadderChartOptions),
     /// Count what the materials of one shader pay for each other, and predict times: a page in Markdown
     Sets(SetsOptions),
     /// Count the cycles of a shader for every shape of stack: the table by which scenes choose models, as JSON
@@ -544,6 +546,16 @@ pub(crate) struct LadderOptions {
     pub(crate) coats: Option<usize>,
     #[command(flatten)]
     pub(crate) precision: Precision,
+    #[command(flatten)]
+    pub(crate) destination: Destination,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  luthier-lab ladder-chart docs/pages/ladder.md -o docs/pages/ladder.svg")]
+pub(crate) struct LadderChartOptions {
+    /// A page that `ladder --chart` wrote
+    #[arg(value_name = "PAGE")]
+    pub(crate) page: PathBuf,
     #[command(flatten)]
     pub(crate) destination: Destination,
 }

@@ -65,6 +65,7 @@ fn main() -> ExitCode {
         Verb::Devices(options) => devices::run(options),
         Verb::Layouts(options) => layouts::run(options),
         Verb::Ladder(options) => ladder::run(options),
+        Verb::LadderChart(options) => ladder::redraw(options),
         Verb::Sets(options) => sets::run(options),
         Verb::Shapes(options) => shapes::run(options),
         Verb::Foreign(options) => foreign::run(options),

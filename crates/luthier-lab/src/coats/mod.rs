@@ -97,8 +97,6 @@ pub(crate) struct Coated {
 /// A surface by the formula of an engine.
 pub(crate) struct Drawn {
     pub(crate) engine: &'static str,
-    /// Whether the base is changed for the coat.
-    pub(crate) is_changed: bool,
     pub(crate) yardstick: Option<Yardstick>,
     shader: Shader,
 }
@@ -115,15 +113,14 @@ pub(crate) fn coated() -> Vec<Coated> {
     let coated = cases().into_iter().filter(|case| page::COATED.contains(&case.group));
     let coated = (0_u32..).zip(coated).map(|(n, case)| {
         let changed = case.surface.remedied();
-        let drawn = |engine: &Engine, name, is_changed| Drawn {
+        let drawn = |engine: &Engine, name, surface| Drawn {
             engine: name,
-            is_changed,
             yardstick: engine.yardstick,
-            shader: (engine.shader)(if is_changed { &changed } else { &case.surface }),
+            shader: (engine.shader)(surface),
         };
         let engines = ENGINES.iter().flat_map(|engine| {
-            let of = [(Some(engine.name), false), (engine.changed, true)];
-            of.map(|(name, is_changed)| Some(drawn(engine, name?, is_changed)))
+            let of = [(Some(engine.name), &case.surface), (engine.changed, &changed)];
+            of.map(|(name, surface)| Some(drawn(engine, name?, surface)))
         });
         Coated { subject: subject(format!("coat-{n}"), &case), drawn: engines.flatten().collect() }
     });

@@ -5,6 +5,7 @@ mod page;
 mod rivals;
 mod steps;
 
+use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use luthier::read_materials;
@@ -20,7 +21,7 @@ use rayon::prelude::*;
 
 use self::rivals::{Rival, rivals};
 use self::steps::{Taken, costs, steps};
-use crate::cli::LadderOptions;
+use crate::cli::{LadderChartOptions, LadderOptions};
 use crate::coats::{Drawn, coated};
 use crate::lobes::{JUDGE_SEED, THETAS_DEG, judge_settings, material, random};
 
@@ -51,15 +52,15 @@ struct Measured {
 /// Stacks of a kind.
 struct Group {
     title: &'static str,
-    /// Heading on the chart; none where nothing is judged.
-    charted: Option<String>,
+    /// Whether models stand beside.
+    is_judged: bool,
     stacks: Vec<Measured>,
 }
 
 /// Outlines every material as each limit asks and prints a page; draws the chart.
 pub(crate) fn run(options: &LadderOptions) -> Outcome {
     let materials = valid(read_materials(&options.sources.paths)?, true)?;
-    let device = DeviceCost::shipped(DEVICE).ok_or_else(|| Failure::Usage(anyhow::anyhow!("no costs of {DEVICE}")))?;
+    let device = device()?;
     let yardstick = costs(&device, |lights| count(&Yardstick::GltfClearcoat.wgsl(), &[], lights))?;
     let is_judged = options.chart.is_some();
     let (families, shipped): (Vec<Material>, Vec<Material>) =
@@ -77,20 +78,17 @@ pub(crate) fn run(options: &LadderOptions) -> Outcome {
     let stacks = (0..).map(random).filter(|subject| interfaces(&subject.stack) >= INTERFACES);
     let stacks = stacks.take(options.stacks as usize).map(|subject| Subject::of(subject, is_judged, Vec::new()));
     let stacks: Vec<Subject> = stacks.collect();
-    let of_coats = format!("{} clear coats over metals and plastics", coats.len());
-    let of_stacks =
-        format!("{} random stack{} of 2 to 5 layers", stacks.len(), if stacks.len() == 1 { "" } else { "s" });
     let groups = [
-        ("Materials", None, shipped),
-        ("Twins in the other distribution", None, twins),
-        ("Materials with textures", None, families),
-        ("Coats of engines", Some(of_coats), coats),
-        ("Random stacks", is_judged.then_some(of_stacks), stacks),
+        ("Materials", false, shipped),
+        ("Twins in the other distribution", false, twins),
+        ("Materials with textures", false, families),
+        ("Coats of engines", is_judged, coats),
+        ("Random stacks", is_judged, stacks),
     ];
     let total = groups.iter().map(|(.., subjects)| subjects.len()).sum::<usize>() as u64;
     let (bar, done) = (Bar::new("fitting and judging"), AtomicU64::new(0));
     let mut measured = Vec::new();
-    for (title, charted, subjects) in groups.into_iter().filter(|(.., subjects)| !subjects.is_empty()) {
+    for (title, is_judged, subjects) in groups.into_iter().filter(|(.., subjects)| !subjects.is_empty()) {
         let stacks = subjects.par_iter().map(|subject| {
             let found = measure(subject, &device, options);
             bar.set(done.fetch_add(1, Ordering::Relaxed) + 1, total);
@@ -98,15 +96,36 @@ pub(crate) fn run(options: &LadderOptions) -> Outcome {
         });
         let stacks: Vec<Measured> = stacks.collect::<Outcome<Vec<Option<Measured>>>>()?.into_iter().flatten().collect();
         if !stacks.is_empty() {
-            measured.push(Group { title, charted, stacks });
+            measured.push(Group { title, is_judged, stacks });
         }
     }
     drop(bar);
-    if let Some(path) = &options.chart {
-        deliver(&chart::chart(&measured, &device), Some(path))?;
-    }
     let page = page::page(&measured, &device, &yardstick, options).map_err(Failure::input)?;
+    if let Some(path) = &options.chart {
+        draw(&page, &device, Some(path))?;
+    }
     deliver(&page, options.destination.output.as_deref())
+}
+
+/// Draws the chart of a page that is there.
+pub(crate) fn redraw(options: &LadderChartOptions) -> Outcome {
+    let page = std::fs::read_to_string(&options.page)
+        .map_err(|error| Failure::Input(anyhow::anyhow!("{}: {error}", options.page.display())))?;
+    draw(&page, &device()?, options.destination.output.as_deref())
+}
+
+fn draw(page: &str, device: &DeviceCost, path: Option<&Path>) -> Outcome {
+    let chart = chart::chart(page, &device.device);
+    deliver(
+        &chart.ok_or_else(|| {
+            Failure::Usage(anyhow::anyhow!("the page has no stacks that were judged: `ladder --chart` judges them"))
+        })?,
+        path,
+    )
+}
+
+fn device() -> Outcome<DeviceCost> {
+    DeviceCost::shipped(DEVICE).ok_or_else(|| Failure::Usage(anyhow::anyhow!("no costs of {DEVICE}")))
 }
 
 impl Subject {

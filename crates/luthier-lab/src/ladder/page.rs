@@ -107,7 +107,7 @@ pub(super) fn page(
     writeln!(page, "\n`gltf-clearcoat` by the same costs: {}.", words.collect::<Vec<_>>().join(", "))?;
     if chart.is_some() {
         write!(page, "\n## Beside models and engines\n\n{BESIDE}")?;
-        for group in groups.iter().filter(|group| group.charted.is_some()) {
+        for group in groups.iter().filter(|group| group.is_judged) {
             beside(&mut page, group)?;
         }
         if let Some(group) = groups.iter().find(|group| group.title == "Random stacks") {

@@ -81,7 +81,7 @@ const LEGEND: f64 = 30.0;
 const MARK: f64 = 6.0;
 
 /// Height of a name, and width of a letter.
-const LETTER: [f64; 2] = [14.0, 6.8];
+const LETTER: [f64; 2] = [14.0, 7.4];
 
 /// Distance of two marks in the column of points without a place across.
 const APART: f64 = 9.0;
@@ -168,6 +168,7 @@ impl Scatter {
             .iter()
             .map(|point| [point.x.map_or_else(|| beside(point.y), |x| frame.px(x)), frame.py(point.y)])
             .collect();
+        let bottom = size[1] - margin.bottom;
         let mut taken: Vec<Area> = places.iter().map(|[at, up]| [at - MARK, up - MARK, at + MARK, up + MARK]).collect();
         for (point, &[at, up]) in panel.points.iter().zip(&places) {
             let class = format!("line reach {}", point.color.class());
@@ -175,6 +176,10 @@ impl Scatter {
             frame.upright(&class, at, [up, reach]);
             frame.mark(series(point.color), at, up, &point.name);
             taken.push([at - 1.0, reach, at + 1.0, up]);
+        }
+        for (value, words) in &self.rules {
+            let up = frame.py(*value);
+            taken.push([edge - LETTER[1] * words.chars().count() as f64, up - LETTER[0] - 4.0, edge, up]);
         }
         let along = joined.windows(2).flat_map(|ends| {
             let [from, to] = [ends[0], ends[1]].map(|(x, y)| [frame.px(x), frame.py(y)]);
@@ -185,7 +190,7 @@ impl Scatter {
         let named = panel.points.iter().zip(&places).filter(|(point, _)| !point.name.is_empty());
         let (inside, outside): (Vec<_>, Vec<_>) = named.partition(|(point, _)| point.x.is_some());
         for (point, &[at, up]) in inside {
-            let (area, anchor, place) = free(&point.name, [at, up], [margin.left, edge], &taken);
+            let (area, anchor, place) = free(&point.name, [at, up], [margin.left, edge, bottom], &taken);
             frame.text(place[0], place[1], anchor, "name", &point.name);
             taken.push(area);
         }
@@ -204,7 +209,12 @@ impl Scatter {
 }
 
 /// The area of a name beside a mark, the anchor of its text and the place of that: the first of some that meets nothing and is within the panel, or else the first.
-fn free(name: &str, [at, up]: [f64; 2], [left, right]: [f64; 2], taken: &[Area]) -> (Area, &'static str, [f64; 2]) {
+fn free(
+    name: &str,
+    [at, up]: [f64; 2],
+    [left, right, bottom]: [f64; 3],
+    taken: &[Area],
+) -> (Area, &'static str, [f64; 2]) {
     let width = LETTER[1] * name.chars().count() as f64;
     let [height, apart] = [LETTER[0], MARK + 3.0];
     let shifts = [0.0, -1.0, 1.0, -2.0, 2.0, -3.0, 3.0].map(|shift| shift * height);
@@ -217,7 +227,9 @@ fn free(name: &str, [at, up]: [f64; 2], [left, right]: [f64; 2], taken: &[Area])
         ([from, y - 0.5 * height, from + width, y + 0.5 * height], anchor, [x, y + 4.5])
     });
     let first = places.clone().next();
-    let found = places.find(|(area, ..)| area[0] >= left && area[2] <= right && !taken.iter().any(|t| meet(t, area)));
+    let found = places.find(|(area, ..)| {
+        area[0] >= left && area[2] <= right && area[3] <= bottom && !taken.iter().any(|t| meet(t, area))
+    });
     found.or(first).unwrap_or_else(|| unreachable!("there are places"))
 }
 
