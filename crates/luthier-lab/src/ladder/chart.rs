@@ -19,7 +19,7 @@ pub(super) fn chart(page: &str, device: &str) -> Option<String> {
     let scatter = Scatter {
         title: format!("lobe error against predicted time on {device}"),
         axes: [
-            format!("predicted ps for one light on an {device} (reads of rows assumed)"),
+            format!("predicted ps for one light on an {device}; reads are assumed"),
             "lobe error at the worst of nine views".to_owned(),
         ],
         untimed: "not counted yet".to_owned(),
