@@ -303,6 +303,7 @@ fn a_change_outdates_exactly_the_steps_that_depend_on_it() {
                 "crash",
                 "examples",
                 "farm",
+                "formats",
                 "gpu",
                 "kind",
                 "installed",
