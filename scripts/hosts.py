@@ -5,14 +5,13 @@ A log is what the test of a host printed; its name is the host's. Lines that com
 """
 
 import re
-import struct
 import sys
-import zlib
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT / "examples/c"))
+sys.path += [str(ROOT / "examples/c"), str(ROOT / "examples/materialx")]
 from difference import read
+from tables import png
 
 LINE = re.compile(
     r"(?P<holds>holds|FAILS): (?P<picture>.+?) by (?P<by>.+?) against preview: median (?P<median>[\d.]+) of 255(, 95 % within (?P<p95>[\d.]+))?"
@@ -48,7 +47,7 @@ def halved(path):
 
 
 def sheet(path):
-    """Writes `preview` and the hosts that have run, and below each host its difference from `preview`; their names."""
+    """Writes `preview` and the hosts that have run, and below each host its difference from `preview`; their names, none where none has run."""
     names, above, below = ["luthier preview"], [], []
     for name, place in SHOWN:
         found = ROOT / "target" / f"{place}.png"
@@ -62,25 +61,23 @@ def sheet(path):
         names.append(name)
         above.append(theirs)
         below.append([[[min(max(128 + FACTOR * (q - p), 0), 255) for p, q in zip(*pixels)] for pixels in zip(*rows)] for rows in zip(ours, theirs)])
-    rows = [b"\0" + bytes(value for picture in line for pixel in picture[y] for value in pixel) for line in (above, below) for y in range(len(line[0]))]
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    header = struct.pack(">IIBBBBB", len(rows[0]) // 3, len(rows), 8, 2, 0, 0, 0)
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"".join(rows), 9)) + chunk(b"IEND", b""))
+    if not above:
+        return []
+    rows = [b"\0" + bytes(value for picture in line for pixel in picture[y] for value in (*pixel, 255)) for line in (above, below) for y in range(len(line[0]))]
+    path.write_bytes(png(len(rows[0]) // 4, len(rows), b"".join(rows)))
     return names
 
 
 place, *logs = map(Path, sys.argv[1:])
 names = sheet(place)
-print(f"""# Hosts
+print("""# Hosts
 
 Made by `scripts/hosts.sh`, which runs the test of each host in `examples/`. A picture is a ball under a lamp, drawn by the host through its own module for luthier, beside that of `luthier preview` from the same bake.
 Differences are those of the channel that is farthest, in steps of 1/255 of the encoded colours, over the pixels that are not black in both. *95 %* and *99 %* of the pixels are within the numbers there. All ran on software: SwiftShader in
 Chromium, llvmpipe elsewhere. The path tracer Mitsuba 3 draws from material files, without a bake; [using.md](../using.md#mitsuba-3) has its errors. A median of 2 is allowed.
-
-![Balls of worn brass: by luthier preview and by {len(names) - 1} hosts; below, their differences about grey]({place.name})
+""")
+if names:
+    print(f"""![Balls of worn brass: by luthier preview and by {len(names) - 1} hosts; below, their differences about grey]({place.name})
 
 *Worn brass, four maps, from the left: {"; ".join(names)}. Below: the differences from `preview` times {FACTOR}, about grey. Hosts read maps from mipmaps, of which `preview` reads level 0.*
 """)

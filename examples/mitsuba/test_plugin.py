@@ -20,6 +20,7 @@ import drjit as dr
 import luthier
 import luthier_bsdf
 from mitsuba.python.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
+from sky import sky
 
 HERE = pathlib.Path(__file__).resolve().parent
 HEAD = 'schema = 1\nname = "{}"\n'
@@ -173,20 +174,6 @@ class Furnace(unittest.TestCase):
                 print(f"furnace: {name} at {theta:.0f} degrees: Mitsuba {np.round(found, 4)}, luthier {np.round(expected, 4)}")
                 np.testing.assert_allclose(found, expected, atol=0.003)
         print(f"furnace: at most {worst:.4f} apart")
-
-
-def sky():
-    """An equirectangular map of soft lamps, in luthier's orientation: the middle looks along -z, +x is right of it, the top is +y."""
-    height = 128
-    u, v = (np.arange(2 * height) + 0.5) / (2 * height), (np.arange(height) + 0.5) / height
-    phi, theta = np.meshgrid((u - 0.5) * 2 * np.pi, v * np.pi)
-    d = np.stack([np.sin(theta) * np.sin(phi), np.cos(theta), -np.sin(theta) * np.cos(phi)], axis=-1)
-    lamps = [([0.5, 0.6, 0.6], 12, [3.0, 2.6, 2.2]), ([-0.8, 0.1, 0.6], 20, [0.4, 0.8, 1.6]), ([0.2, -0.9, 0.3], 6, [0.5, 0.3, 0.2])]
-    radiance = 0.15 + 0.1 * d[..., 1:2] * np.ones(3)
-    for towards, sharpness, color in lamps:
-        towards = np.array(towards) / np.linalg.norm(towards)
-        radiance = radiance + np.exp(sharpness * (d @ towards - 1.0))[..., None] * np.array(color)
-    return radiance.astype(np.float32)
 
 
 class Ball(unittest.TestCase):

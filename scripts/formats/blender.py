@@ -11,15 +11,18 @@ import json
 import math
 import os
 import pathlib
-import struct
 import subprocess
 import sys
 import tempfile
 import tomllib
-import zlib
 
 import bpy
 import numpy as np
+
+EXAMPLES = pathlib.Path(__file__).parents[2] / "examples"
+sys.path += [str(EXAMPLES / "materialx"), str(EXAMPLES / "mitsuba")]
+from sky import sky
+from tables import png
 
 SIZE, PATHS, SAMPLES = 128, 256, 512
 # Largest median of materials whose export is within WELL of the layers, in albedo and lobe error, in 1/255.
@@ -45,19 +48,6 @@ its Principled BSDF, which are not those of glTF. Blender's importer copies the 
 """
 
 
-def sky():
-    """Radiance over directions by equirectangular rows from the top; the middle of a row is behind the ball."""
-    height = 128
-    phi, theta = np.meshgrid(((np.arange(2 * height) + 0.5) / (2 * height) - 0.5) * 2 * np.pi, (np.arange(height) + 0.5) / height * np.pi)
-    d = np.stack([np.sin(theta) * np.sin(phi), np.cos(theta), -np.sin(theta) * np.cos(phi)], axis=-1)
-    lamps = [([0.5, 0.6, 0.6], 12, [3.0, 2.6, 2.2]), ([-0.8, 0.1, 0.6], 20, [0.4, 0.8, 1.6]), ([0.2, -0.9, 0.3], 6, [0.5, 0.3, 0.2])]
-    radiance = 0.15 + 0.1 * d[..., 1:2] * np.ones(3)
-    for towards, sharpness, color in lamps:
-        towards = np.array(towards) / np.linalg.norm(towards)
-        radiance = radiance + np.exp(sharpness * (d @ towards - 1.0))[..., None] * np.array(color)
-    return radiance.astype(np.float32)
-
-
 def write_hdr(path, rgb):
     """A Radiance file, without compression."""
     height, width, _ = rgb.shape
@@ -70,13 +60,8 @@ def write_hdr(path, rgb):
 def write_png(path, rgb):
     """A PNG of values of 0 to 255."""
     height, width, _ = rgb.shape
-    rows = np.concatenate([np.zeros((height, 1), np.uint8), rgb.round().clip(0, 255).astype(np.uint8).reshape(height, -1)], axis=1)
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows.tobytes())) + chunk(b"IEND", b""))
+    opaque = np.concatenate([rgb.round().clip(0, 255), np.full((height, width, 1), 255)], axis=-1).astype(np.uint8).reshape(height, -1)
+    path.write_bytes(png(width, height, np.concatenate([np.zeros((height, 1), np.uint8), opaque], axis=1).tobytes()))
 
 
 def pixels_of(path):

@@ -110,7 +110,7 @@ pub(crate) fn run(options: &LadderOptions) -> Outcome {
 /// Draws the chart of a page that is there.
 pub(crate) fn redraw(options: &LadderChartOptions) -> Outcome {
     let page = std::fs::read_to_string(&options.page)
-        .map_err(|error| Failure::Input(anyhow::anyhow!("{}: {error}", options.page.display())))?;
+        .map_err(|error| Failure::Files(anyhow::anyhow!("{}: {error}", options.page.display())))?;
     draw(&page, &device()?, options.destination.output.as_deref())
 }
 
