@@ -77,6 +77,8 @@ hosts() {
   LUTHIER=${LUTHIER:?names the program} scripts/hosts.sh >docs/pages/hosts.md
   cp target/hosts/hosts.png docs/pages/hosts.png
 }
+# By its name only: wants the module installed in the Python that LUTHIER_PYTHON names, and a processor with nothing else to do.
+python-speed() { "${LUTHIER_PYTHON:-python3}" crates/luthier-python/bench.py >docs/pages/python-speed.md; }
 five-ways() { luthier-lab five-ways -o docs/pages/five-ways.md; }
 varying() { luthier-lab varying --random 8 --noise 0.015 -o docs/pages/varying.md; }
 anisotropic() {

@@ -1,10 +1,10 @@
-"""Pairs of directions a second and core, in batches of a million: python bench.py
+"""Pairs of directions a second and core, in batches of a million: python bench.py >docs/pages/python-speed.md
 
-Prints a table in Markdown: the best of five runs of `Function.eval` for each material and model, by processor time of one thread. Directions are random in the
-hemisphere.
+Directions are random in the hemisphere. The module is that of the Python that runs this.
 """
 
 import os
+import platform
 import time
 
 os.environ["RAYON_NUM_THREADS"] = "1"
@@ -30,6 +30,13 @@ CASES = [
     ("elek", "glass by Fresnel's equations over a diffuse base", [GLASS, BASE]),
     ("microfacet", "metal of a given F0", [METAL]),
 ]
+# For the list of all models.
+STACKS = [
+    ("tinted coat over a diffuse base", [TINTED, BASE]),
+    ("clear coat over metal", [CLEAR, METAL]),
+]
+# Models that are random estimates, with one walk for each pair.
+ONE = {model: {"samples": 1} for model in ("random-walk", "layered-mc", "layered-mc-one-facet")}
 
 
 def hemisphere(seed):
@@ -39,19 +46,72 @@ def hemisphere(seed):
     return np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1)
 
 
-def seconds(function, wi, wo):
+def seconds(function, wi, wo, runs=5):
     best = float("inf")
-    for _ in range(5):
+    for _ in range(runs):
         start = time.process_time()
         function.eval(wi, wo)
         best = min(best, time.process_time() - start)
     return best
 
 
-wi, wo = hemisphere(1), hemisphere(2)
-print("Millions of pairs a second and core:\n")
-print("| model | material | pairs |\n|---|---|--:|")
-for model, name, layers in CASES:
-    function = luthier.load({"schema": 1, "name": "bench", "layer": layers}).function(model)
+def millions(function):
+    """Pairs in a microsecond, of as many as take half a second: ten at least, a million at most."""
     function.eval(wi[:1], wo[:1])
-    print(f"| `{model}` | {name} | {COUNT / seconds(function, wi, wo) / 1e6:.1f} |")
+    count = 10
+    while count < COUNT and (once := seconds(function, wi[:count], wo[:count], 1)) < 0.5:
+        count = min(COUNT, 2 * count if once > 0.2 else 10 * count)
+    return count / seconds(function, wi[:count], wo[:count]) / 1e6
+
+
+def function(model, layers):
+    return luthier.load({"schema": 1, "name": "bench", "layer": layers}).function(model, **ONE.get(model, {}))
+
+
+def taken(model):
+    """The first of the stacks that a model takes, and its function."""
+    for name, layers in STACKS:
+        try:
+            return name, function(model, layers)
+        except luthier.MaterialError:
+            continue
+    return "-", None
+
+
+def processor():
+    """The name of the processor, as Linux has it."""
+    try:
+        with open("/proc/cpuinfo") as info:
+            found = dict(line.split(":", 1) for line in info if ":" in line)
+        return " ".join(f"{key.strip()} {value.strip()}," for key, value in found.items() if key.strip() in ("model name", "cpu MHz"))
+    except OSError:
+        return f"{platform.machine()},"
+
+
+HEAD = """# Speed of the Python module
+
+Made by `crates/luthier-python/bench.py` with the module of a release build, luthier {version}, on one core: {processor} NumPy {numpy}. Numbers are
+millions of pairs of directions a second of processor time that `Function.eval` takes: arrays of up to a million random pairs, the best of five runs.
+
+## Phong, Elek's model and one surface
+
+| model | material | pairs |
+|---|---|--:|"""
+
+ALL = """
+## All models
+
+The material is a tinted coat over a diffuse base, or, for a model that refuses it, a clear coat over metal. A model of one surface takes the coat alone,
+Lambert's and Oren and Nayar's the base. Random walks have one walk for each pair. Slow models get fewer pairs.
+
+| model | material | pairs |
+|---|---|--:|"""
+
+wi, wo = hemisphere(1), hemisphere(2)
+print(HEAD.format(version=luthier.__version__, processor=processor(), numpy=np.__version__))
+for model, name, layers in CASES:
+    print(f"| `{model}` | {name} | {millions(function(model, layers)):.1f} |")
+print(ALL)
+for model in luthier.models():
+    name, prepared = taken(model["name"])
+    print(f"| `{model['name']}` | {name} | {millions(prepared) if prepared else float('nan'):.2g} |", flush=True)
