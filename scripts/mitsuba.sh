@@ -10,6 +10,17 @@ export LUTHIER_CACHE=
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+# With an older one Mitsuba ends in the middle of a test.
+newest() {
+  PATH=$PATH:/sbin:/usr/sbin ldconfig -p |
+    awk '/libLLVM/ { version = $1; sub(/^libLLVM(-|\.so\.)/, "", version); if (version + 0 >= 17) print version + 0, $NF }' | sort -n | tail -n 1 | cut -d " " -f 2
+}
+if [ -z "${DRJIT_LIBLLVM_PATH-}" ] && [ "$(uname -s)" = Linux ]; then
+  DRJIT_LIBLLVM_PATH=$(newest)
+  [ -n "$DRJIT_LIBLLVM_PATH" ] || { echo "error: Mitsuba wants LLVM 17 or later as a library: on Debian apt-get install libllvm19" >&2 && exit 3; }
+  export DRJIT_LIBLLVM_PATH
+fi
+
 if [ -z "${LUTHIER-}" ]; then
   cargo build --locked --release -p luthier-cli
   LUTHIER=$PWD/target/release/luthier
