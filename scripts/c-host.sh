@@ -60,6 +60,7 @@ step "bakes"
 languages=(--no-zstd --target wgsl,glsl450,hlsl --form baked --quiet)
 luthier bake "${materials[@]}" "${languages[@]}" --functions surface --out "$out/kinds"
 luthier bake materials/papers/car-paint.toml "${languages[@]}" --out "$out/eval"
+luthier bake materials/papers/car-paint.toml "${languages[@]}" --prefix car --out "$out/prefixed"
 for layout in "${layouts[@]}"; do
   luthier bake materials/papers/car-paint.toml --model lobes --layout "$layout" "${languages[@]}" --functions surface --out "$out/$layout"
   luthier bake materials/papers/car-paint.toml --model lobes --layout "$layout" "${languages[@]}" --out "$out/eval-$layout"
@@ -89,7 +90,7 @@ manifest = {'schema': 4, 'materials': [], 'tables': [], 'shaders': [], 'bindings
 text = json.dumps(manifest)[:-1] + ', "plain": ' + json.dumps(texts, ensure_ascii=False, indent=3) + '}'
 open(sys.argv[1], 'w', encoding='utf-8').write(text)
 PYTHON
-for bake in texts kinds "${small[@]}"; do
+for bake in texts kinds prefixed "${small[@]}"; do
   "$out/tests" --json "$out/$bake" >"$out/$bake.values"
   python3 - "$out/$bake/manifest.json" >"$out/$bake.expected" <<'PYTHON'
 import json, sys

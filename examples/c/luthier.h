@@ -199,7 +199,8 @@ static void *luthier__list(luthier_bake *bake, const char *name, size_t size, co
 }
 
 static void luthier__lists(luthier_bake *bake) {
-    const luthier_json *at;
+    const luthier_json *at, *given = luthier_member(luthier_member(bake->json, "names"), "prefix");
+    const char *prefix = given && given->type == '"' ? given->text : "luthier"; const size_t end = strlen(prefix);
     int i, j;
     bake->materials = (luthier_material *)luthier__list(bake, "materials", sizeof(luthier_material), &at, &bake->material_count);
     for (i = 0; i < bake->material_count; i++, at += at->size) {
@@ -223,7 +224,7 @@ static void luthier__lists(luthier_bake *bake) {
         luthier_binding b = { luthier__string(bake, at, "bindings[].name"), luthier__string(bake, at, "bindings[].resource"),
             (unsigned)luthier__whole(bake, at, "bindings[].binding"), NULL };
         for (j = 0; j < bake->table_count; j++)
-            if (!strncmp(b.name, "luthier_", 8) && !strcmp(b.name + 8, bake->tables[j].kind)) b.table = &bake->tables[j];
+            if (!strncmp(b.name, prefix, end) && b.name[end] == '_' && !strcmp(b.name + end + 1, bake->tables[j].kind)) b.table = &bake->tables[j];
         if (!b.table && (!strcmp(b.resource, "texture_2d<f32>") || !strcmp(b.resource, "buffer<vec4<u32>>")))
             luthier__fail(bake, "manifest.json", "no table for the binding ", b.name);
         bake->bindings[i] = b;
@@ -263,7 +264,6 @@ const luthier_shader *luthier_find_shader(luthier_bake *bake, const char *target
 }
 
 static uint64_t luthier__number(const unsigned char *at, int bytes) { return bytes ? at[0] | luthier__number(at + 1, bytes - 1) << 8 : 0; }
-
 int luthier_read_texture(luthier_bake *bake, const luthier_table *table, luthier_texture *texture) {
     static const struct { const char *name; unsigned vk, bytes, side; int filtered; } formats[] = {
         { "r16float", 76, 2, 1, 1 }, { "rg16float", 83, 4, 1, 1 }, { "rgba16float", 97, 8, 1, 1 }, { "rgba8unorm", 37, 4, 1, 1 },

@@ -6,8 +6,8 @@ use crate::constants::MaterialConstants;
 use crate::material::MaterialEntry;
 use crate::record::{LAYER_WORDS, LayerRecord, whole};
 
-/// `vec4` words of a material's header in the material buffer.
-pub const MATERIAL_WORDS: usize = 11;
+/// `vec4` words of a material's header in the material buffer: as many as a layer has, so that both are blocks of one size.
+pub const MATERIAL_WORDS: usize = LAYER_WORDS;
 
 /// The material buffer: [`MATERIAL_WORDS`] header words per material, then [`LAYER_WORDS`] words per layer, in order; after the
 /// layers of a material with patina, or with a coat that has a weight, the layer of [`MaterialConstants::bare`].
@@ -30,7 +30,7 @@ pub fn material_buffer(materials: &[MaterialEntry]) -> Vec<[f32; 4]> {
         let lobes = material.layers.first().and_then(|layer| layer.tiles[TableKind::Lobes]).unwrap_or(0);
         let model = material.model.number() as usize;
         words.push([whole(first), whole(material.layers.len()), whole(model), lobes as f32]);
-        words.extend(material.constants.words());
+        extend_with_constants(&mut words, &material.constants);
         first += material.blocks() * LAYER_WORDS;
     }
     for material in materials {
@@ -38,15 +38,21 @@ pub fn material_buffer(materials: &[MaterialEntry]) -> Vec<[f32; 4]> {
         if let (Some(side), Some(coat)) = (material.side(), &material.constants.coat) {
             let (first, lobes) = (words.len() + MATERIAL_WORDS, coat.bare.tiles[TableKind::Lobes].unwrap_or(0));
             words.push([whole(first), whole(side.layers.len()), coat.weight as f32, lobes as f32]);
-            words.extend(side.constants.words());
+            extend_with_constants(&mut words, &side.constants);
             words.extend(side.layers.iter().flat_map(LayerRecord::words));
         }
     }
     words
 }
 
-const _: () = assert!(MATERIAL_WORDS == 1 + MaterialConstants::WORDS, "one word, and the constants");
-const _: () = assert!(MATERIAL_WORDS == LAYER_WORDS, "a block is a header or a layer");
+/// The rest of a header behind its first word: the constants, and zeros up to the size of a block.
+fn extend_with_constants(words: &mut Vec<[f32; 4]>, constants: &MaterialConstants) {
+    words.extend(constants.words());
+    words.extend([[0.0; 4]; UNUSED]);
+}
+
+/// Words of a header that hold nothing, where a layer has more; a header that has more than a layer does not compile.
+const UNUSED: usize = MATERIAL_WORDS - 1 - MaterialConstants::WORDS;
 
 #[cfg(test)]
 mod tests {

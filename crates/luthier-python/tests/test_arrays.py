@@ -168,8 +168,21 @@ class Errors(unittest.TestCase):
         self.assertEqual(caught.exception.diagnostics[0]["line"], 6)
 
     def test_a_missing_file(self):
-        with self.assertRaisesRegex(OSError, "nowhere.toml"):
+        with self.assertRaisesRegex(FileNotFoundError, "nowhere.toml"):
             luthier.load("nowhere.toml")
+
+    def test_numbers_beyond_their_limits(self):
+        chalk, up = luthier.load(CHALK), [0.0, 0.0, 1.0]
+        refused = {
+            "wavelength_nm: expected a wavelength from 360 to 830 nm": {"wavelength_nm": 359.0},
+            "either color or wavelength_nm": {"wavelength_nm": 500.0, "color": "spectral"},
+            "seed: expected a whole number from 0": {"seed": -1},
+            "samples: expected a whole number from 1": {"samples": 2**70},
+            "uv: expected 2 numbers": {"uv": 3},
+        }
+        for words, arguments in refused.items():
+            with self.assertRaisesRegex(ValueError, words):
+                chalk.eval(up, up, model="layered-mc", **arguments)
 
     def test_names(self):
         chalk, up = luthier.load(CHALK), [0.0, 0.0, 1.0]

@@ -68,9 +68,32 @@ class Bakes(unittest.TestCase):
             luthier.bake([luthier.load(CHALK), luthier.load(CHALK)], model="elek")
         with self.assertRaises(luthier.MaterialError):
             luthier.bake([])
+        with self.assertRaisesRegex(TypeError, "materials: expected Material, found str"):
+            luthier.bake(["chalk.toml"])
+
+    def test_one_in_place_of_some(self):
+        one = luthier.bake(luthier.load(CHALK), model="elek", targets="hlsl", forms="full")
+        self.assertEqual(list(one.shaders), ["full.hlsl"])
 
 
 class Tables(unittest.TestCase):
+    def test_limits_are_those_of_the_command(self):
+        refused = {
+            "size: expected 2 whole numbers from 4 to 1024": lambda: luthier.table_dfg("unreal", size=(0, 4)),
+            "size: expected 3 whole numbers from 2 to 1024": lambda: luthier.table_fresnel(size=(8, -4, 4)),
+            "lie one below the other": lambda: luthier.table_fresnel(size=(8, 1024, 1024)),
+            "size: a search finds its own": lambda: luthier.table_dfg(max_abs=0.1, size=(8, 8)),
+            "max_abs: expected a positive number": lambda: luthier.table_dfg(max_abs=-1),
+            "a preset has a distribution": lambda: luthier.table_dfg("unreal", distribution="beckmann"),
+            "film: expected an index": lambda: luthier.table_film(float("nan"), 1.5),
+            "base: expected an index": lambda: luthier.table_film(1.4, 1.5 - 2j),
+            "above: expected a positive number": lambda: luthier.table_film(1.4, 1.5, above=-1),
+            "min_cos: expected a number from 0 up to 1": lambda: luthier.table_cloth(min_cos=1.0),
+        }
+        for words, call in refused.items():
+            with self.assertRaisesRegex(ValueError, words):
+                call()
+
     def test_a_preset_is_held_to_what_it_says(self):
         table = luthier.table_dfg("filament", size=(32, 32))
         self.assertEqual(table.texels.shape[:2], (32, 32))
@@ -150,7 +173,7 @@ class Imports(unittest.TestCase):
                 imported.write(here)
             imported.write(here, force=True)
             with self.assertRaises(OSError):
-                luthier.import_files([os.path.join(folder, "nowhere.gltf")])
+                luthier.import_files(os.path.join(folder, "nowhere.gltf"))
             with self.assertRaisesRegex(ValueError, "lacquer.toml"):
                 luthier.import_files([os.path.join(here, "red-lacquer.toml")])
 

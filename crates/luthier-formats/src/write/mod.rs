@@ -52,12 +52,15 @@ struct Named<'m> {
     textures: Vec<(String, &'m Texture)>,
 }
 
-/// Adds the picture of a texture, under a name that no other bytes have.
+/// Adds the picture of a texture, under a name that no other bytes have, on file systems without case, too.
 fn placed(files: &mut BTreeMap<String, Vec<u8>>, texture: &Texture) -> String {
     let (stem, ending) = texture.name.rsplit_once('.').unwrap_or((&texture.name, "png"));
     let numbered = (2..).map(|number| format!("{TEXTURES}/{stem}-{number}.{ending}"));
     let mut names = std::iter::once(format!("{TEXTURES}/{stem}.{ending}")).chain(numbered);
-    let is_free = |path: &String| files.get(path).is_none_or(|bytes| *bytes == texture.bytes);
+    let is_free = |path: &String| {
+        let known = files.iter().find(|(known, _)| known.eq_ignore_ascii_case(path));
+        known.is_none_or(|(known, bytes)| known == path && *bytes == texture.bytes)
+    };
     let path = names.find(is_free).unwrap_or_default();
     files.insert(path.clone(), texture.bytes.clone());
     path

@@ -1,5 +1,6 @@
 //! MaterialX 1.39: a shader and a material for each material, with a graph of its textures.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
@@ -14,19 +15,19 @@ pub(super) fn text(format: Format, materials: &[Named<'_>], generator: &str) -> 
     let mut out = String::from("<?xml version=\"1.0\"?>\n");
     let _ = writeln!(out, "<!-- Written by {} -->", generator.replace("--", "-"));
     out += "<materialx version=\"1.39\" colorspace=\"lin_rec709\">\n";
-    for material in materials {
-        let mut name = material.name.replace('-', "_");
-        if name.starts_with(|c: char| c.is_ascii_digit()) {
-            name.insert(0, '_');
-        }
+    let mut taken = BTreeSet::new();
+    // Materials have their names first: a shader or a graph may not be called as one of them.
+    let names: Vec<String> = materials.iter().map(|material| free(&mut taken, identifier(&material.name))).collect();
+    for (material, name) in materials.iter().zip(&names) {
         let numbers = &material.of.numbers;
         let mut shader = Shader {
             textures: &material.textures,
             nodes: String::new(),
             outputs: String::new(),
             inputs: String::new(),
-            graph: format!("NG_{name}"),
+            graph: free(&mut taken, format!("NG_{name}")),
         };
+        let surface = free(&mut taken, format!("SR_{name}"));
         let category = match format {
             Format::StandardSurface => {
                 shader.standard_surface(numbers);
@@ -42,14 +43,28 @@ pub(super) fn text(format: Format, materials: &[Named<'_>], generator: &str) -> 
         if !outputs.is_empty() {
             let _ = write!(out, "  <nodegraph name=\"{graph}\">\n{nodes}{outputs}  </nodegraph>\n");
         }
-        let _ = write!(out, "  <{category} name=\"SR_{name}\" type=\"surfaceshader\">\n{inputs}  </{category}>\n");
+        let _ = write!(out, "  <{category} name=\"{surface}\" type=\"surfaceshader\">\n{inputs}  </{category}>\n");
         let _ = write!(
             out,
-            "  <surfacematerial name=\"{name}\" type=\"material\">\n    <input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"SR_{name}\" />\n  </surfacematerial>\n"
+            "  <surfacematerial name=\"{name}\" type=\"material\">\n    <input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"{surface}\" />\n  </surfacematerial>\n"
         );
     }
     out += "</materialx>\n";
     out
+}
+
+/// A name of MaterialX for that of a material.
+fn identifier(name: &str) -> String {
+    let name = name.replace('-', "_");
+    if name.starts_with(|c: char| c.is_ascii_digit()) { format!("_{name}") } else { name }
+}
+
+/// A name that no other element of the file has, with as few underscores behind it as it takes.
+fn free(taken: &mut BTreeSet<String>, mut name: String) -> String {
+    while !taken.insert(name.clone()) {
+        name.push('_');
+    }
+    name
 }
 
 /// A shader under way: nodes and outputs of its graph, its inputs.

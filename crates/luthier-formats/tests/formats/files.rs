@@ -1,6 +1,10 @@
 //! The files as their formats have them.
 
-use luthier_formats::{Fate, Format, WriteError, files};
+use std::collections::BTreeSet;
+use std::io;
+
+use luthier_formats::{Exported, Fate, Format, WriteError, files};
+use luthier_import::import;
 use serde_json::Value;
 
 use super::{imported, of_repository, quick};
@@ -18,6 +22,49 @@ fn gltf_names_its_extensions() {
     let names: Vec<&str> =
         root["materials"].as_array().unwrap().iter().map(|of| of["name"].as_str().unwrap()).collect();
     assert_eq!(names, ["car-paint", "car-paint-2"]);
+}
+
+/// A material may be called as the shader of another.
+#[test]
+fn names_of_materialx_are_of_one_element() {
+    let (lacquer, beside) = of_repository("materials/textured/board/varnished-oak.toml");
+    let once = quick(&lacquer, Format::OpenPbr, &beside);
+    let called = |name: &str| Exported { name: name.to_owned(), ..once.clone() };
+    let all = ["SR-x", "x", "NG-x", "SR-x-", "1x"].map(called);
+    let files = files(Format::OpenPbr, &all, "test").unwrap();
+    let text = std::str::from_utf8(&files["materials.mtlx"]).unwrap();
+    let document = roxmltree::Document::parse(text).unwrap();
+    let elements = document.root_element().children().filter(roxmltree::Node::is_element);
+    let mut names: Vec<&str> = elements.clone().map(|element| element.attribute("name").unwrap()).collect();
+    let count = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), count);
+    let materials = elements.filter(|element| element.has_tag_name("surfacematerial"));
+    assert_eq!(
+        materials.map(|of| of.attribute("name").unwrap()).collect::<Vec<_>>(),
+        ["SR_x", "x", "NG_x", "SR_x_", "_1x"]
+    );
+    let reader = |path: &str| files.get(path).cloned().ok_or_else(|| io::Error::from(io::ErrorKind::NotFound));
+    assert_eq!(import("materials.mtlx", text.as_bytes(), &reader).unwrap().materials.len(), all.len());
+}
+
+/// Pictures whose names differ by case alone are two files on all file systems.
+#[test]
+fn pictures_differ_by_more_than_case() {
+    let (oak, beside) = of_repository("materials/textured/board/varnished-oak.toml");
+    let mut once = quick(&oak, Format::Gltf, &beside);
+    let mut loud = once.clone();
+    for texture in &mut once.textures {
+        texture.name = "wood.png".to_owned();
+    }
+    for texture in &mut loud.textures {
+        texture.name = "Wood.png".to_owned();
+        texture.bytes.push(0);
+    }
+    let files = files(Format::Gltf, &[once, loud], "test").unwrap();
+    let paths: BTreeSet<String> = files.keys().map(|path| path.to_ascii_lowercase()).collect();
+    assert_eq!(paths.len(), files.len());
 }
 
 /// Every input of the shaders is one that the format defines, of its type.

@@ -21,7 +21,7 @@ from typing import Any, Union
 
 import numpy as np
 
-from . import _luthier
+from . import _checks, _luthier
 from ._luthier import MaterialError, __version__
 from ._toml import text_of
 
@@ -53,7 +53,7 @@ def load(source: PathLike | Mapping[str, Any], name: str = "<dict>") -> Material
     """
     if isinstance(source, Mapping):
         return Material(_luthier.parse(text_of(source), name))
-    return Material(_luthier.load(os.fspath(source)))
+    return Material(_luthier.load(_checks.there(os.fspath(source))))
 
 
 def directions(theta_deg: Any, phi_deg: Any = 0.0) -> Array:
@@ -266,7 +266,7 @@ class Material:
         Args:
             model: one of :func:`models`; that of the material unless given.
             color: ``spectral`` (D65 and the eye of 1931), ``three-wavelengths`` (those of the file), or ``material``, the mode of the file.
-            wavelength_nm: one wavelength in place of a colour.
+            wavelength_nm: one wavelength in place of a colour, 360 to 830.
             effects: whether flakes, patina, glitter and maps of the file count, as far as the model shows them.
             uv: texture coordinate of the place; (0, 0) unless given.
             distance: distance of the eye in scene units, for flakes that fade.
@@ -282,6 +282,11 @@ class Material:
         Raises:
             ValueError: an unknown name, an argument that the model does not take, or a material outside the domain of the model.
         """
+        if wavelength_nm is not None and not 360.0 <= wavelength_nm <= 830.0:
+            raise ValueError(f"wavelength_nm: expected a wavelength from 360 to 830 nm, found {wavelength_nm!r}")
+        if wavelength_nm is not None and color != "material":
+            raise ValueError("state either color or wavelength_nm")
+        samples, seed = _checks.whole(samples, 1, "samples"), _checks.whole(seed, 0, "seed")
         numbers = [(*_live_key(key), np.ravel(np.asarray(value, np.float64)).tolist()) for key, value in (live or {}).items()]
         at = {
             "effects": effects, "uv": _tuple(uv, 2, "uv"), "distance": distance, "normal": _tuple(normal, 3, "normal"), "alpha_factor": alpha_factor,
@@ -324,7 +329,7 @@ _KEPT = 16
 def _tuple(values: Sequence[float] | None, count: int, name: str) -> tuple[float, ...] | None:
     if values is None:
         return None
-    found = tuple(float(value) for value in values)
+    found = tuple(float(value) for value in np.atleast_1d(values))
     if len(found) != count or not np.isfinite(found).all():
         raise ValueError(f"{name}: expected {count} numbers, found {found}")
     return found
@@ -373,20 +378,20 @@ class Bake:
 
 
 def bake(
-    materials: Iterable[Material],
+    materials: Material | Iterable[Material],
     out: PathLike | None = None,
     *,
     model: str | None = None,
     no_fit: bool = False,
-    forms: Sequence[str] = (),
-    targets: Sequence[str] = ("wgsl", "glsl450", "glsl-es300"),
-    functions: Sequence[str] = (),
-    tables: Sequence[str] = (),
+    forms: str | Sequence[str] = (),
+    targets: str | Sequence[str] = ("wgsl", "glsl450", "glsl-es300"),
+    functions: str | Sequence[str] = (),
+    tables: str | Sequence[str] = (),
 ) -> Bake:
     """Bakes materials: the tables that their models need, and shaders that read these.
 
     Args:
-        materials: the materials, whose names differ.
+        materials: a material, or some whose names differ.
         out: a folder where the bake is published; none unless given.
         model: the model of all materials in place of those of the files.
         no_fit: True where nothing may be simulated: materials that name no model take one in closed form.
@@ -399,10 +404,9 @@ def bake(
         MaterialError: materials that cannot be baked, or not together.
         OSError: the folder cannot be written.
     """
-    raw = [material._raw for material in materials]
-    asked = {
-        "model": model, "no_fit": no_fit, "forms": list(forms), "targets": list(targets), "functions": list(functions), "tables": list(tables),
-    }
+    raw = [material._raw for material in _checks.listed(materials, Material, "materials")]
+    words = {"forms": forms, "targets": targets, "functions": functions, "tables": tables}
+    asked = {"model": model, "no_fit": no_fit, **{name: _checks.listed(some, str, name) for name, some in words.items()}}
     made = Bake(_luthier.bake(raw, asked))
     if out is not None:
         made.write(out)
@@ -486,8 +490,8 @@ def table_dfg(
     preset: str | None = None,
     *,
     max_abs: float | None = None,
-    distribution: str = "ggx",
-    masking: str = "correlated",
+    distribution: str | None = None,
+    masking: str | None = None,
     size: tuple[int, int] | None = None,
     min_cos: float = 0.01,
     min_alpha: float = 0.01,
@@ -497,16 +501,25 @@ def table_dfg(
     Args:
         preset: an engine, as for ``luthier table dfg --preset``.
         max_abs: largest error of a search, where no preset is given. ``about["held"]`` says whether it is held.
-        distribution: ``ggx`` or ``beckmann``, for a search.
-        masking: the masking term, for a search.
-        size: texels across and down, in place of those of the preset.
+        distribution: ``ggx`` (unless given) or ``beckmann``, for a search.
+        masking: the masking term, for a search; ``correlated`` unless given.
+        size: texels across and down, 4 to 1024 each, in place of those of the preset.
         min_cos: errors at lower cosines do not count.
         min_alpha: errors at lower slope parameters do not count.
     """
     if (preset is None) == (max_abs is None):
         raise ValueError("state either a preset or max_abs")
-    limit = np.inf if max_abs is None else max_abs
-    return Table(_luthier.table_dfg(preset, limit, distribution, masking, size, (min_cos, min_alpha)))
+    if preset is not None and not (distribution is None and masking is None):
+        raise ValueError("a preset has a distribution and a masking term of its own: leave them out, or state max_abs")
+    if preset is None and size is not None:
+        raise ValueError("size: a search finds its own, leave it out, or state a preset")
+    limit = np.inf if max_abs is None else _checks.positive(max_abs, "max_abs")
+    size = None if size is None else _checks.sides(size, 2, 4)
+    return Table(_luthier.table_dfg(preset, limit, distribution or "ggx", masking or "correlated", size, _lowest(min_cos, min_alpha)))
+
+
+def _lowest(min_cos: float, min_alpha: float) -> tuple[float, float]:
+    return _checks.share(min_cos, "min_cos"), _checks.share(min_alpha, "min_alpha")
 
 
 def table_cloth(
@@ -519,12 +532,12 @@ def table_cloth(
     min_alpha: float = 0.01,
 ) -> Table:
     """The directional albedo of Charlie's cloth, in floats. ``visibility`` is ``neubelt`` or ``estevez-kulla``; ``size`` is texels across and down."""
-    return Table(_luthier.table_cloth(visibility, axes, nodes, size, (min_cos, min_alpha)))
+    return Table(_luthier.table_cloth(visibility, axes, nodes, _checks.sides(size, 2, 4), _lowest(min_cos, min_alpha)))
 
 
 def table_energy(preset: str, *, min_cos: float = 0.01, min_alpha: float = 0.01) -> dict[str, Table]:
     """The tables of energy compensation of a renderer, by name, as ``luthier table energy --preset``."""
-    return {name: Table(raw) for name, raw in _luthier.table_energy(preset, (min_cos, min_alpha))}
+    return {name: Table(raw) for name, raw in _luthier.table_energy(preset, _lowest(min_cos, min_alpha))}
 
 
 def table_film(
@@ -539,8 +552,8 @@ def table_film(
     min_cos: float = 0.01,
 ) -> Table:
     """The colour (linear Rec.709) that a plane reflects under a thin film, over angle and thickness. Indices are n + kj; ``size`` is texels across and down."""
-    film, base = complex(film), complex(base)
-    pairs = (film.real, film.imag), (base.real, base.imag)
+    pairs = _checks.index(film, "film"), _checks.index(base, "base")
+    above, size, min_cos = _checks.positive(above, "above"), _checks.sides(size, 2, 4), _checks.share(min_cos, "min_cos")
     return Table(_luthier.table_film(*pairs, above, axes, nodes, size, three_wavelengths, min_cos))
 
 
@@ -548,7 +561,7 @@ def table_fresnel(
     *, axes: str = "cos_theta,ior_n,ior_k", nodes: str = "ends", size: tuple[int, int, int] = (128, 32, 32), min_cos: float = 0.01
 ) -> Table:
     """The reflectance of a smooth plane of any index in air, over angle, n and k."""
-    return Table(_luthier.table_fresnel(axes, nodes, size, min_cos))
+    return Table(_luthier.table_fresnel(axes, nodes, _checks.sides(size, 3, 2), _checks.share(min_cos, "min_cos")))
 
 
 def table_ltc(distribution: str = "ggx", *, masking: str = "correlated") -> tuple[Table, Table]:
@@ -596,11 +609,11 @@ class Imported:
         return [path for path in places if path.endswith(".toml")]
 
 
-def import_files(paths: Iterable[PathLike], out: PathLike | None = None, *, root: PathLike | None = None, force: bool = False) -> Imported:
+def import_files(paths: PathLike | Iterable[PathLike], out: PathLike | None = None, *, root: PathLike | None = None, force: bool = False) -> Imported:
     """Material files from glTF, MaterialX and physicallybased.info, as ``luthier import`` makes them.
 
     Args:
-        paths: files.
+        paths: a file, or some.
         out: a folder to write into, see :meth:`Imported.write`.
         root: the folder that has all that the files name; that of each file unless given.
         force: whether files that are there are replaced.
@@ -609,7 +622,8 @@ def import_files(paths: Iterable[PathLike], out: PathLike | None = None, *, root
         ValueError: a file that is none of these formats.
         OSError: a file that cannot be read or written.
     """
-    files, report = _luthier.import_files([os.fspath(path) for path in paths], None if root is None else os.fspath(root))
+    paths = [_checks.there(os.fspath(path)) for path in _checks.listed(paths, (str, os.PathLike), "paths")]
+    files, report = _luthier.import_files(paths, None if root is None else os.fspath(root))
     imported = Imported({path: bytes(data) for path, data in files.items()}, json.loads(report))
     if out is not None:
         imported.write(out, force)

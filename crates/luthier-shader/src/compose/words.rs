@@ -5,7 +5,7 @@ use luthier_manifest::{LAYER_WORDS, MATERIAL_WORDS};
 use crate::identifiers::is_of_word;
 
 /// Header words of a material, as `MaterialConstants::words` lays them out behind the first.
-const MATERIAL: [&str; MATERIAL_WORDS] = [
+const MATERIAL: [&str; 11] = [
     "layers",
     "phong_diffuse",
     "phong_specular",
