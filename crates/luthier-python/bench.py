@@ -30,11 +30,6 @@ CASES = [
     ("elek", "glass by Fresnel's equations over a diffuse base", [GLASS, BASE]),
     ("microfacet", "metal of a given F0", [METAL]),
 ]
-# For the list of all models.
-STACKS = [
-    ("tinted coat over a diffuse base", [TINTED, BASE]),
-    ("clear coat over metal", [CLEAR, METAL]),
-]
 # Models that are random estimates, with one walk for each pair.
 ONE = {model: {"samples": 1} for model in ("random-walk", "layered-mc", "layered-mc-one-facet")}
 
@@ -68,16 +63,6 @@ def function(model, layers):
     return luthier.load({"schema": 1, "name": "bench", "layer": layers}).function(model, **ONE.get(model, {}))
 
 
-def taken(model):
-    """The first of the stacks that a model takes, and its function."""
-    for name, layers in STACKS:
-        try:
-            return name, function(model, layers)
-        except luthier.MaterialError:
-            continue
-    return "-", None
-
-
 def processor():
     """The name of the processor, as Linux has it."""
     try:
@@ -101,11 +86,11 @@ millions of pairs of directions a second of processor time that `Function.eval` 
 ALL = """
 ## All models
 
-The material is a tinted coat over a diffuse base, or, for a model that refuses it, a clear coat over metal. A model of one surface takes the coat alone,
-Lambert's and Oren and Nayar's the base. Random walks have one walk for each pair. Slow models get fewer pairs.
+The material is a tinted coat over a diffuse base. A model of one surface takes the coat alone, Lambert's and Oren and Nayar's the base. Random walks have
+one walk for each pair. Slow models get fewer pairs.
 
-| model | material | pairs |
-|---|---|--:|"""
+| model | pairs |
+|---|--:|"""
 
 wi, wo = hemisphere(1), hemisphere(2)
 print(HEAD.format(version=luthier.__version__, processor=processor(), numpy=np.__version__))
@@ -113,5 +98,5 @@ for model, name, layers in CASES:
     print(f"| `{model}` | {name} | {millions(function(model, layers)):.1f} |")
 print(ALL)
 for model in luthier.models():
-    name, prepared = taken(model["name"])
-    print(f"| `{model['name']}` | {name} | {millions(prepared) if prepared else float('nan'):.2g} |", flush=True)
+    name = model["name"]
+    print(f"| `{name}` | {millions(function(name, [TINTED, BASE])):.2g} |", flush=True)

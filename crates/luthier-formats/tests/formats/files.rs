@@ -27,8 +27,8 @@ fn gltf_names_its_extensions() {
 /// A material may be called as the shader of another.
 #[test]
 fn names_of_materialx_are_of_one_element() {
-    let (lacquer, beside) = of_repository("materials/textured/board/varnished-oak.toml");
-    let once = quick(&lacquer, Format::OpenPbr, &beside);
+    let (oak, beside) = of_repository("materials/textured/board/varnished-oak.toml");
+    let once = quick(&oak, Format::OpenPbr, &beside);
     let called = |name: &str| Exported { name: name.to_owned(), ..once.clone() };
     let all = ["SR-x", "x", "NG-x", "SR-x-", "1x"].map(called);
     let files = files(Format::OpenPbr, &all, "test").unwrap();
