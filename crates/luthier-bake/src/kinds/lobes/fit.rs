@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use luthier_layers::models::lobes::{
-    Cover, EXCESS, Family, FitError, FitSettings, Judge, LOBES, SlopeAxis, Traced, Varied, Varying, most_lobes,
-    most_searched, shown,
+    Cover, EXCESS, Family, FitError, FitSettings, Judge, LOBES, LOBES_MAX, SlopeAxis, Traced, Varied, Varying,
+    most_lobes, most_searched, shown,
 };
 use luthier_material::Material;
 use luthier_optics::Rgb;
@@ -13,7 +13,7 @@ use luthier_optics::stack::{Base, Stack};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::rows::{ROWS, STEPS, is_family, varying};
+use super::rows::{FINE_ROWS, KEPT, ROWS, is_family, varying};
 use crate::graph::{Artefact, Inputs, Job, JobKind, Store, result_of};
 use crate::json;
 
@@ -54,13 +54,13 @@ pub fn fitted(stack: &Stack, color: &Color, varying: Option<Varying>, store: &dy
     fits.of(None).varied.clone()
 }
 
-/// Lobes of a material, and their errors with each of [`STEPS`].
+/// Lobes of a material, and their errors with each of [`KEPT`]; one error where a fit has [`FINE_ROWS`], all of which are kept.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Fit {
     pub(super) varied: Varied,
-    errors: [FitError; STEPS.len()],
+    errors: Vec<FitError>,
     /// Errors with [`OneWidth`](luthier_layers::models::lobes::OneWidth), of a search where lobes have it.
-    pub(super) of_one_width: Option<[FitError; STEPS.len()]>,
+    pub(super) of_one_width: Option<Vec<FitError>>,
 }
 
 impl Fit {
@@ -74,9 +74,10 @@ impl Fit {
         Self { of_one_width, ..self }
     }
 
-    /// Errors with each of [`STEPS`].
-    pub(super) fn errors(&self, has_one_width: bool) -> &[FitError; STEPS.len()] {
-        self.of_one_width.as_ref().filter(|_| has_one_width).unwrap_or(&self.errors)
+    /// The error with so many rows. More than a fit has show the same light.
+    pub(super) fn error(&self, has_one_width: bool, rows: usize) -> FitError {
+        let errors = self.of_one_width.as_ref().filter(|_| has_one_width).unwrap_or(&self.errors);
+        errors[KEPT.iter().position(|kept| *kept == rows).unwrap_or(0)]
     }
 
     /// The lobes, with one width if so.
@@ -85,36 +86,53 @@ impl Fit {
         narrowed.unwrap_or_else(|| self.varied.clone())
     }
 
+    /// Relative index of the medium of the lobes.
+    fn index(&self) -> f64 {
+        self.varied.nodes[0].frame.index
+    }
+
     /// Number of lobes.
     pub(super) fn lobes(&self) -> usize {
         self.varied.nodes[0].rows[0].lobes.len()
     }
 }
 
-/// Errors of lobes with each of [`STEPS`]: those of the views of a judge, and those of the rows that are left out.
-pub(super) fn errors(varied: &Varied, judge: &Judge) -> [FitError; STEPS.len()] {
-    STEPS.map(|step| judge.error(&thinned(varied.clone(), step)).max(varied.error_of_thinning(step)))
+/// Errors of lobes with each of the numbers of rows that are kept: those of the views of a judge, and those of the rows that are left out.
+fn errors(varied: &Varied, judge: &Judge) -> Vec<FitError> {
+    let kept: &[usize] = if varied.nodes[0].axis.size() == FINE_ROWS { &[FINE_ROWS] } else { &KEPT };
+    let errors = kept.iter().map(|&rows| {
+        let step = (kept[0] - 1) / (rows - 1);
+        judge.error(&with_rows(varied.clone(), rows)).max(varied.error_of_thinning(step))
+    });
+    errors.collect()
 }
 
-/// Lobes with every `step`-th of [`ROWS`]. Fits with fewer get those between.
-pub(super) fn thinned(varied: Varied, step: usize) -> Varied {
-    let own = (ROWS - 1) / (varied.nodes[0].axis.size() - 1);
-    let varied = if own > 1 { varied.refined(own) } else { varied };
-    varied.thinned(step)
+/// Lobes with so many rows: those between where a fit has fewer, else some of them.
+pub(super) fn with_rows(varied: Varied, rows: usize) -> Varied {
+    let [own, wanted] = [varied.nodes[0].axis.size(), rows].map(|rows| rows - 1);
+    let steps = own.max(wanted).max(ROWS - 1);
+    let varied = if steps > own { varied.refined(steps / own) } else { varied };
+    varied.thinned(steps / wanted)
 }
 
-/// Result of a [`FitJob`]: one fit without a search, else one for each largest number of lobes from 0 on, or of a family for as many halvings of its nodes as
-/// lobes lack.
+/// The number of a fit with [`LOBES_MAX`] lobes from [`FINE_ROWS`], after those with up to so many.
+pub(super) const FINE: usize = LOBES_MAX + 1;
+
+/// The lobe error within which a search wants a fit: where none is, it makes one from [`FINE_ROWS`].
+const WANTED: f64 = 0.03;
+
+/// Result of a [`FitJob`]: one fit without a search, else one for each largest number of lobes from 0 on, and one from [`FINE_ROWS`] where none of them is within
+/// [`WANTED`]; of a family one for as many halvings of its nodes as lobes lack.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Fits(Vec<Fit>);
 
 impl Fits {
-    /// The most lobes among which a search chooses.
+    /// The most lobes among which a search chooses; [`FINE`] where one of the fits has [`FINE_ROWS`].
     pub(super) fn most(&self) -> usize {
         self.0.len() - 1
     }
 
-    /// The fit; with at most `most` lobes, if a search decided so.
+    /// The fit; with at most `most` lobes, if a search decided so. With [`FINE`] it is the one from [`FINE_ROWS`], or the last.
     pub(super) fn of(&self, most: Option<usize>) -> &Fit {
         &self.0[most.unwrap_or(0).min(self.0.len() - 1)]
     }
@@ -148,7 +166,7 @@ impl Job for FitJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 15 } else { 10 }
+        if is_family(self.varying) { 15 } else { 11 }
     }
 
     fn inputs(&self) -> Value {
@@ -181,19 +199,51 @@ impl Job for FitJob {
             });
             return Artefact::new(Fits(fits.collect()));
         }
-        let wanted: Vec<(usize, f64)> =
-            if *is_searched { (0..=most).map(|most| (most, 0.0)).collect() } else { vec![(most, EXCESS)] };
-        let fits = wanted.into_iter().map(|(most, excess)| {
-            let fit = Fit::new(traced.fit(most, excess), &judge);
-            if *is_searched && most <= 1 { fit.and_of_one_width(&judge) } else { fit }
-        });
-        Artefact::new(Fits(fits.collect()))
+        if !*is_searched {
+            return Artefact::new(Fits(vec![Fit::new(traced.fit(most, EXCESS), &judge)]));
+        }
+        let fits = nearest(&traced, most, &judge).into_iter().enumerate();
+        let fits = fits.map(|(most, fit)| if most <= 1 { fit.and_of_one_width(&judge) } else { fit });
+        let mut fits: Vec<Fit> = fits.collect();
+        if fits.len() == FINE && fits.iter().all(|fit| fit.error(false, ROWS).lobe > WANTED) {
+            let fine =
+                Traced::new(stack, color, *varying, FitSettings { rows: FINE_ROWS, ..FitSettings::of(*varying) });
+            let medium = fine.media().iter().position(|index| *index == fits[most].index()).unwrap_or(0);
+            fits.push(Fit::new(fine.in_medium(medium).fit(most, 0.0), &judge));
+        }
+        Artefact::new(Fits(fits))
     }
 
     fn decode(&self, bytes: &[u8]) -> Option<Artefact> {
         Artefact::decode::<Fits>(bytes)
     }
 }
+
+/// Fits with up to no lobe, one, and so on, each in the medium where a judge finds it nearest. A fit itself compares media by their own cells, which are blind at
+/// some views, and by one lobe.
+fn nearest(traced: &Traced, most: usize, judge: &Judge) -> Vec<Fit> {
+    let judged = |fits: Vec<Varied>| fits.into_iter().map(|varied| Fit::new(varied, judge)).collect::<Vec<Fit>>();
+    let mut fits = judged(traced.fit_each(most));
+    if fits.iter().skip(1).all(|fit| fit.error(false, ROWS).lobe <= NEAR) {
+        return fits;
+    }
+    let usual = fits[most].index();
+    for (medium, _) in traced.media().into_iter().enumerate().filter(|(_, index)| *index != usual) {
+        let others = judged(traced.in_medium(medium).fit_each(most));
+        for (fit, other) in fits.iter_mut().zip(others).skip(1) {
+            if other.error(false, ROWS).lobe < CLEAR * fit.error(false, ROWS).lobe {
+                *fit = other;
+            }
+        }
+    }
+    fits
+}
+
+/// The lobe error at which a search looks for no other medium.
+const NEAR: f64 = 0.02;
+
+/// The share of the error that another medium may have at most, to be taken.
+const CLEAR: f64 = 0.95;
 
 /// Numbers of the varying factor, for the key.
 pub(super) fn numbers(varying: Varying) -> Value {

@@ -12,13 +12,13 @@ mod tile;
 
 use std::sync::Arc;
 
-use luthier_layers::models::lobes::{FitError, LOBES, Varied};
+use luthier_layers::models::lobes::{FitError, LOBES, LOBES_MAX, Varied};
 use luthier_lut::{AtlasLayout, RowLayout, TableKind};
 use luthier_manifest::{Budget, Candidate, CandidateForm, LobesForm, MeasuredError, Search};
 use luthier_material::Material;
 
-use self::fit::{FitJob, Fits, fit};
-use self::rows::{STEPS, of_model, side};
+use self::fit::{FINE, FitJob, Fits, fit};
+use self::rows::{FINE_ROWS, KEPT, of_model, side};
 use self::shape::{HIDDEN_READS, ONE_WIDTH_LAST, parts, reads, shape, shape_of_one_width, shape_with};
 use self::tile::LobesJob;
 use super::{Kind, Site};
@@ -110,22 +110,24 @@ pub(crate) fn decide(
     }
     let have_one_width = fits.iter().all(|fits| fits.of(Some(1)).of_one_width.is_some());
     let most = fits.iter().map(|fits| fits.most()).max().unwrap_or(0);
-    let steps = (0..=most).map(|most| (most, false)).chain(have_one_width.then_some((1, true)));
-    let choices: Vec<(usize, bool, usize)> =
-        steps.flat_map(|(most, has_one_width)| (0..STEPS.len()).map(move |i| (most, has_one_width, i))).collect();
-    let shape_of = |(most, has_one_width, i): (usize, bool, usize)| {
+    let steps = (0..=most.min(LOBES_MAX)).map(|most| (most, false)).chain(have_one_width.then_some((1, true)));
+    let choices: Vec<(usize, bool, usize)> = steps
+        .flat_map(|(most, has_one_width)| KEPT.map(|rows| (most, has_one_width, rows)))
+        .chain((most == FINE).then_some((FINE, false, FINE_ROWS)))
+        .collect();
+    let shape_of = |(most, has_one_width, rows): (usize, bool, usize)| {
         let lobes = lobes_of(&fits, most);
         let parts = parts(materials, lobes);
         match has_one_width {
-            true => shape_of_one_width(parts, STEPS[i], format_of(ONE_WIDTH_LAST as usize)),
-            false => shape(parts, STEPS[i], format_of(reads(lobes))),
+            true => shape_of_one_width(parts, rows, format_of(ONE_WIDTH_LAST as usize)),
+            false => shape(parts, rows, format_of(reads(lobes))),
         }
     };
-    let candidates = choices.iter().map(|&(most, has_one_width, i)| {
-        let errors = fits.iter().map(|fits| fits.of(Some(most)).errors(has_one_width)[i]);
+    let candidates = choices.iter().map(|&(most, has_one_width, rows)| {
+        let errors = fits.iter().map(|fits| fits.of(Some(most)).error(has_one_width, rows));
         let error = errors.fold(FitError::default(), FitError::max);
         let tiles = fits.iter().map(|fits| fits.of(Some(most)).varied.tiles() as u32).sum();
-        let Shape { x, y, base, format } = shape_of((most, has_one_width, i));
+        let Shape { x, y, base, format } = shape_of((most, has_one_width, rows));
         let cost = cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * cost::read(format);
         let apron = apron(std::iter::once(&x).chain(&y));
         let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron, columns: 1, tiles, base };
@@ -137,14 +139,14 @@ pub(crate) fn decide(
     let found = std::slice::from_ref(&found);
     let chosen = locked(found, options.locked, budget, 0).map_or_else(|| choose(found, budget, 0), Ok);
     let chosen = chosen.map_err(|refusal| {
-        let (most, has_one_width, i) = match &refusal {
+        let (most, has_one_width, rows) = match &refusal {
             Refusal::Error { nearest: (_, nearest), .. } => choices[*nearest],
             Refusal::Whole { .. } => choices[0],
         };
         let errors = materials.iter().enumerate().filter_map(|(number, material)| {
             let fits = [Some(fit(material, true)), side(material).map(|side| fit(&side, true))];
             let fits = fits.into_iter().flatten().filter_map(|job| results.get::<Fits>(job.key()));
-            let errors = fits.map(|fits| fits.of(Some(most)).errors(has_one_width)[i]);
+            let errors = fits.map(|fits| fits.of(Some(most)).error(has_one_width, rows));
             Some((number, measured(errors.reduce(FitError::max)?)))
         });
         (refusal, errors.collect())

@@ -8,8 +8,8 @@ use luthier_manifest::{
 use luthier_material::Material;
 
 use super::fit::{Fits, fit};
-use super::rows::{STEPS, has_base, is_family, most, varying};
-use super::shape::{have_one_width, is_of_one_width, step};
+use super::rows::{has_base, is_family, most, varying};
+use super::shape::{have_one_width, is_of_one_width};
 use crate::graph::{Job, Results};
 use crate::settings::Settings;
 
@@ -64,11 +64,8 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
     let fit = fits.of(most);
     let has_one_width = shape.y.as_ref().is_some_and(is_of_one_width);
     let varied = fit.shaped(has_one_width);
-    let step = step(shape.x.size);
-    let error = STEPS.iter().position(|known| *known == step).map(|i| {
-        let FitError { lobe, lobe_noise, albedo, albedo_noise } = fit.errors(has_one_width)[i];
-        LobesError { lobe, lobe_noise, albedo, albedo_noise }
-    });
+    let FitError { lobe, lobe_noise, albedo, albedo_noise } = fit.error(has_one_width, shape.x.size as usize);
+    let error = Some(LobesError { lobe, lobe_noise, albedo, albedo_noise });
     let lobes = &varied.nodes[0];
     let (wide, Critical { cot_sq, width, plain_share }) = (lobes.frame.wide, lobes.axis.critical());
     LobesRecord {

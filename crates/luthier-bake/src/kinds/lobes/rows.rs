@@ -10,8 +10,11 @@ use crate::settings::Settings;
 /// Rows of a fit.
 pub(super) const ROWS: usize = FitSettings::DEFAULT_ROWS;
 
-/// Steps between the rows that are kept, among which a search chooses.
-pub(super) const STEPS: [usize; 4] = [1, 2, 3, 6];
+/// Numbers of rows that are kept, among which a search chooses.
+pub(super) const KEPT: [usize; 4] = [ROWS, 10, 7, 4];
+
+/// Rows of a fit of its own, of a search where none of the others is near enough.
+pub(super) const FINE_ROWS: usize = 2 * ROWS - 1;
 
 /// The factor that a texture varies and that rows are over, or the slope parameters and colours of single layers. A material has at most one of these.
 pub(super) fn varying(material: &Material) -> Option<Varying> {

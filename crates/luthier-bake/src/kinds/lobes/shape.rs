@@ -1,4 +1,4 @@
-//! Shapes of tiles of lobes: parts of rows, steps between rows, layouts.
+//! Shapes of tiles of lobes: parts of rows, numbers of rows, layouts.
 
 use luthier_layers::models::lobes::{
     Family, FitSettings, LOBES, LOBES_MAX, Paint, Row, Varied, Varying, base_below, shown,
@@ -11,9 +11,9 @@ use super::rows::{ROWS, has_base, is_family, of_model, side, varying};
 use crate::options::Options;
 use crate::settings::{Shape, axis};
 
-/// Steps of the rows by default from row to row that suffice for all materials. Layers below a coat have the rows of the others.
-pub(super) fn common_step(materials: &[Material]) -> usize {
-    of_model(materials).map(|material| FitSettings::step(varying(material))).min().unwrap_or(1)
+/// Rows by default that suffice for all materials. Layers below a coat have the rows of the others.
+fn common_rows(materials: &[Material]) -> usize {
+    of_model(materials).map(|material| FitSettings::of(varying(material)).rows).max().unwrap_or(ROWS)
 }
 
 /// Numbers of the first part and of the last that rows of materials have, with at most so many lobes.
@@ -69,9 +69,8 @@ pub(crate) fn layout(materials: &[Material], options: &Options<'_>, asked: &Budg
     })
 }
 
-/// The shape of tiles with parts from the first to the last. `step` is the distance of the rows that are kept.
-pub(super) fn shape([first, last]: [i32; 2], step: usize, format: TexelFormat) -> Shape {
-    let rows = (ROWS - 1) / step + 1;
+/// The shape of tiles with parts from the first to the last.
+pub(super) fn shape([first, last]: [i32; 2], rows: usize, format: TexelFormat) -> Shape {
     let axes = [
         axis("cos_theta", "", [0.0, 1.0], rows as u32, Mapping::Rational { bend: 1.0 }),
         axis("part", "", [first, last].map(f64::from), (last - first) as u32 + 1, Mapping::Apart),
@@ -89,15 +88,15 @@ pub(super) fn reads(lobes: usize) -> usize {
 pub(super) const HIDDEN_READS: usize = 2;
 
 /// The shape of tiles whose rows have one lobe of one width.
-pub(super) fn shape_of_one_width([first, _]: [i32; 2], step: usize, format: TexelFormat) -> Shape {
-    shape([first, ONE_WIDTH_LAST], step, format)
+pub(super) fn shape_of_one_width([first, _]: [i32; 2], rows: usize, format: TexelFormat) -> Shape {
+    shape([first, ONE_WIDTH_LAST], rows, format)
 }
 
-/// The shape of the tiles of materials with at most so many lobes, at the step that suffices for all.
+/// The shape of the tiles of materials with at most so many lobes, with the rows that suffice for all.
 pub(super) fn shape_with(materials: &[Material], lobes: usize, format: TexelFormat) -> Shape {
     let parts = parts(materials, lobes);
     let of = if have_one_width(materials) { shape_of_one_width } else { shape };
-    of(parts, common_step(materials), format)
+    of(parts, common_rows(materials), format)
 }
 
 /// Whether the forms of materials give their rows one width.
@@ -114,9 +113,4 @@ pub(super) const ONE_WIDTH_LAST: i32 = 2;
 /// Whether rows of tiles with such parts have one lobe of one width.
 pub(super) fn is_of_one_width(parts: &Axis) -> bool {
     parts.max == f64::from(ONE_WIDTH_LAST)
-}
-
-/// The step between kept rows of an axis with this many nodes.
-pub(super) fn step(size: u32) -> usize {
-    (ROWS - 1) / (size as usize - 1)
 }

@@ -6,9 +6,9 @@ use luthier_layers::models::lobes::{Axes, Family, LOBES, LOBES_MAX, Row, Varying
 use luthier_lut::{Axis, Comparison, ErrorStats, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
 use serde_json::{Value, json};
 
-use super::fit::{FitJob, Fits, factor_name, thinned};
+use super::fit::{FitJob, Fits, factor_name, with_rows};
 use super::rows::is_family;
-use super::shape::{is_of_one_width, step};
+use super::shape::is_of_one_width;
 use crate::graph::{Artefact, Inputs, Job, JobKind};
 use crate::json;
 use crate::tile::{TileData, color_in_words, lone_tile};
@@ -96,7 +96,7 @@ impl Job for LobesJob {
     fn run(&self, inputs: &Inputs<'_>) -> Artefact {
         let [x, y] = &self.axes;
         let fits: &Fits = inputs.part(self.fit.as_ref());
-        let varied = thinned(fits.of(self.most).shaped(is_of_one_width(y)), step(x.size));
+        let varied = with_rows(fits.of(self.most).shaped(is_of_one_width(y)), x.size as usize);
         let (lobes, tile) = varied.tile(self.tile);
         let most = (y.max as usize + 1 - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
         let layout = match varied.varying() {

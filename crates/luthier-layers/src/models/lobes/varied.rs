@@ -485,6 +485,31 @@ impl Traced {
         Self { simulations, varying: Some(Over { varying, least, stack, color: *color }), settings }
     }
 
+    /// Relative indices of the media in whose half vectors lobes may be; none where something varies.
+    pub fn media(&self) -> Vec<f64> {
+        match (&self.varying, self.simulations.as_slice()) {
+            (None, [only]) => only.cells.iter().map(|cells| cells.index).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The light for lobes in the half vectors of one of [`Self::media`], by number.
+    #[must_use]
+    pub fn in_medium(&self, medium: usize) -> Self {
+        let simulations = self.simulations.iter().map(|simulation| simulation.in_cells(medium)).collect();
+        Self { simulations, varying: self.varying.clone(), settings: self.settings }
+    }
+
+    /// [`Self::fit`] without excess for every number of lobes from 0 up to `most`.
+    pub fn fit_each(&self, most: usize) -> Vec<Varied> {
+        match (&self.varying, self.simulations.as_slice()) {
+            (None, [only]) => {
+                only.fit_each(most).into_iter().map(|lobes| Varied { nodes: vec![lobes], varying: None }).collect()
+            }
+            _ => (0..=most).map(|most| self.fit(most, 0.0)).collect(),
+        }
+    }
+
     /// The fewest lobes, up to `most`, that are no farther from the light than the best by more than `excess`, see [`Simulation::fit_fewest`].
     pub fn fit(&self, most: usize, excess: f64) -> Varied {
         let Some(over) = &self.varying else {

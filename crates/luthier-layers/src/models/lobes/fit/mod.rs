@@ -292,18 +292,18 @@ impl Simulation {
         self.lobes(&self.fewest(most, excess))
     }
 
+    /// [`Self::fit_fewest`] without excess for every number of lobes from 0 up to `most`.
+    pub fn fit_each(&self, most: usize) -> Vec<Lobes> {
+        let problems = self.problems();
+        let fits = self.fits(&problems, most);
+        let founds = (0..=most).map(|most| fewest(&problems, &fits[..fits.len().min(most + 1)], 0.0));
+        founds.map(|found| self.lobes(&self.polished(found))).collect()
+    }
+
     /// The place of [`Self::fit_fewest`].
     pub(super) fn fewest(&self, most: usize, excess: f64) -> Found {
         let problems = self.problems();
-        let mut fits = self.fits(&problems, most);
-        let costs: Vec<Vec<f64>> = fits.iter().map(|found| found.costs(&problems)).collect();
-        let worst: Vec<f64> = costs.iter().map(|costs| costs.iter().copied().fold(0.0, f64::max)).collect();
-        let best = (0..fits.len()).min_by(|a, b| worst[*a].total_cmp(&worst[*b])).unwrap_or(0);
-        let fewest = costs.iter().position(|cost| {
-            let gains = cost.iter().zip(&costs[best]).map(|(own, best)| 0.5 * (own - best).max(0.0).sqrt());
-            gains.fold(0.0, f64::max) <= excess
-        });
-        self.polished(fits.swap_remove(fewest.unwrap_or(best)))
+        self.polished(fewest(&problems, &self.fits(&problems, most), excess))
     }
 
     /// The place that a search with all views comes to.
@@ -396,6 +396,18 @@ impl Simulation {
         }
         fits
     }
+}
+
+/// The fit of the fewest lobes that suffices, see [`Simulation::fit_fewest`].
+fn fewest(problems: &[Problem<'_>], fits: &[Found], excess: f64) -> Found {
+    let costs: Vec<Vec<f64>> = fits.iter().map(|found| found.costs(problems)).collect();
+    let worst: Vec<f64> = costs.iter().map(|costs| costs.iter().copied().fold(0.0, f64::max)).collect();
+    let best = (0..fits.len()).min_by(|a, b| worst[*a].total_cmp(&worst[*b])).unwrap_or(0);
+    let fewest = costs.iter().position(|cost| {
+        let gains = cost.iter().zip(&costs[best]).map(|(own, best)| 0.5 * (own - best).max(0.0).sqrt());
+        gains.fold(0.0, f64::max) <= excess
+    });
+    fits[fewest.unwrap_or(best)].clone()
 }
 
 /// `a / b`; 0 unless b is positive.
@@ -541,6 +553,7 @@ const SHARPEST: f64 = 2.0;
 const REFERENCE_NM: f64 = 589.3;
 
 /// A place that a search came to.
+#[derive(Debug, Clone)]
 pub(super) struct Found {
     /// Number of the set of cells.
     pub(super) set: usize,

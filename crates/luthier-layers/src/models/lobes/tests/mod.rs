@@ -198,6 +198,16 @@ fn settings_decide_everything() {
     assert_eq!(fitted(&stack, 1).rows, fitted(&stack, 1).rows);
 }
 
+/// Oracle: a fit for each number of lobes by itself.
+#[test]
+fn fits_of_each_number_of_lobes_are_those_alone() {
+    let settings = FitSettings { paths: 8192, ..FitSettings::default() };
+    let simulation = Simulation::new(&lacquered(), &Color::ThreeWavelengths(NM), settings);
+    for (most, lobes) in simulation.fit_each(2).iter().enumerate().skip(1) {
+        assert_eq!(lobes.rows, simulation.fit_fewest(most, 0.0).rows, "{most}");
+    }
+}
+
 /// Oracle: paths of the same coats over a base of another albedo. What the base sends back to itself is closed form for a Lambertian base.
 #[test]
 fn a_base_of_another_albedo_has_its_light() {
