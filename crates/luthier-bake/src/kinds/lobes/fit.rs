@@ -6,6 +6,7 @@ use luthier_layers::models::lobes::{
     Cover, EXCESS, Family, FitError, FitSettings, Judge, LOBES, LOBES_MAX, SlopeAxis, Traced, Varied, Varying,
     most_lobes, most_searched, shown,
 };
+use luthier_manifest::MapSlot;
 use luthier_material::Material;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
@@ -27,7 +28,9 @@ pub(super) fn fit(material: &Material, is_searched: bool) -> Arc<FitJob> {
         Some(Varying::Family(family)) => alike(&stack, family),
         _ => stack,
     };
-    Arc::new(FitJob { stack, color, varying, is_searched })
+    // Measured in the usual medium: a lobe of another returns less light where the surface of one layer leans.
+    let keeps_medium = !is_searched || material.layers.iter().any(|layer| layer.varies(MapSlot::Bumps));
+    Arc::new(FitJob { stack, color, varying, is_searched, keeps_medium })
 }
 
 /// The stack of a family with the same numbers in place of all that its rows do not hang on: slope parameters that are axes, and colours in closed
@@ -48,7 +51,7 @@ pub(super) const ANY_COLOR: Rgb = [0.5; 3];
 /// The lobes of a stack, as in bakes without limits on their errors. They come from the store, or are fitted now and
 /// kept.
 pub fn fitted(stack: &Stack, color: &Color, varying: Option<Varying>, store: &dyn Store) -> Varied {
-    let job = FitJob { stack: shown(stack), color: *color, varying, is_searched: false };
+    let job = FitJob { stack: shown(stack), color: *color, varying, is_searched: false, keeps_medium: true };
     let fits = result_of(&job, store);
     let fits: &Fits = fits.get().unwrap_or_else(|| unreachable!("results at the address of a fit are fits"));
     fits.of(None).varied.clone()
@@ -145,6 +148,8 @@ pub(super) struct FitJob {
     pub(super) color: Color,
     pub(super) varying: Option<Varying>,
     pub(super) is_searched: bool,
+    /// Whether lobes stay in the medium that a fit by itself has, see [`nearest`].
+    pub(super) keeps_medium: bool,
 }
 
 impl FitJob {
@@ -181,11 +186,12 @@ impl Job for FitJob {
             "seed": seed,
             "varying": self.varying.map(|varying| json!([factor_name(varying), numbers(varying)])),
             "is_searched": self.is_searched,
+            "keeps_medium": self.keeps_medium,
         })
     }
 
     fn run(&self, _: &Inputs<'_>) -> Artefact {
-        let Self { stack, color, varying, is_searched } = self;
+        let Self { stack, color, varying, is_searched, keeps_medium } = self;
         let traced = Traced::new(stack, color, *varying, FitSettings::of(*varying));
         let judge = Judge::new(stack, color, *varying);
         let most = self.most();
@@ -202,7 +208,8 @@ impl Job for FitJob {
         if !*is_searched {
             return Artefact::new(Fits(vec![Fit::new(traced.fit(most, EXCESS), &judge)]));
         }
-        let fits = nearest(&traced, most, &judge).into_iter().enumerate();
+        let media = if *keeps_medium { Vec::new() } else { traced.media() };
+        let fits = nearest(&traced, &media, most, &judge).into_iter().enumerate();
         let fits = fits.map(|(most, fit)| if most <= 1 { fit.and_of_one_width(&judge) } else { fit });
         let mut fits: Vec<Fit> = fits.collect();
         if fits.len() == FINE && fits.iter().all(|fit| fit.error(false, ROWS).lobe > WANTED) {
@@ -219,16 +226,16 @@ impl Job for FitJob {
     }
 }
 
-/// Fits with up to no lobe, one, and so on, each in the medium where a judge finds it nearest. A fit itself compares media by their own cells, which are blind at
+/// Fits with up to no lobe, one, and so on, each in the one of some media where a judge finds it nearest. A fit itself compares media by their own cells, which are blind at
 /// some views, and by one lobe.
-fn nearest(traced: &Traced, most: usize, judge: &Judge) -> Vec<Fit> {
+fn nearest(traced: &Traced, media: &[f64], most: usize, judge: &Judge) -> Vec<Fit> {
     let judged = |fits: Vec<Varied>| fits.into_iter().map(|varied| Fit::new(varied, judge)).collect::<Vec<Fit>>();
     let mut fits = judged(traced.fit_each(most));
     if fits.iter().skip(1).all(|fit| fit.error(false, ROWS).lobe <= NEAR) {
         return fits;
     }
     let usual = fits[most].index();
-    for (medium, _) in traced.media().into_iter().enumerate().filter(|(_, index)| *index != usual) {
+    for (medium, _) in media.iter().enumerate().filter(|(_, index)| **index != usual) {
         let others = judged(traced.in_medium(medium).fit_each(most));
         for (fit, other) in fits.iter_mut().zip(others).skip(1) {
             if other.error(false, ROWS).lobe < CLEAR * fit.error(false, ROWS).lobe {
