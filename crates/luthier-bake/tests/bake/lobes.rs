@@ -116,19 +116,21 @@ fn a_tight_limit_takes_a_third_lobe() {
 #[test]
 fn a_limit_takes_lobes_in_the_medium_where_they_are_nearest() {
     let layers = [dielectric("2.22", 0.115), conductor("\"ti\"", 0.157)].map(|layer| layer + BECKMANN).concat();
-    let of = |limit: Option<f64>, maps: &str| {
+    let of = |limit: Option<f64>, form: Option<LobesForm>, maps: &str| {
         let mut steep = material("steep", &format!("{layers}{maps}"), "");
         steep.bake.model = Some(ShadingModel::Lobes);
+        steep.bake.lobes = form;
         let materials = [steep];
         let budget = Budget { max_lobe_err: limit, ..Budget::default() };
         let baked = bake_with(&materials, &Options { budget, ..Options::default() }, &no_images, &Silent, &*STORE);
         baked.unwrap().materials[0].constants.lobes.unwrap()
     };
-    let [usual, near] = [None, Some(0.03)].map(|limit| of(limit, ""));
+    let [usual, near] = [None, Some(0.03)].map(|limit| of(limit, None, ""));
     assert!(usual.index > 2.0 && usual.error.unwrap().lobe > 0.045, "{usual:?}");
     assert!(near.index < 1.1 && near.lobes == 2 && near.error.unwrap().lobe < 0.03, "{near:?}");
-    // Lobes of layers that lean stay where their light was measured.
-    assert_eq!(of(Some(0.2), "maps = { bumps = \"b.png\" }\n").index, usual.index);
+    // A form chooses among media, too, but where a layer leans: lobes stay where their light was measured.
+    let [flat, leaning] = ["", "maps = { bumps = \"b.png\" }\n"].map(|maps| of(None, Some(LobesForm::TwoLobes), maps));
+    assert_eq!([flat, leaning].map(|lobes| lobes.index), [near.index, usual.index]);
 }
 
 /// Light through three coats of which two are thinner than what is above them changes fast next to two critical angles.
