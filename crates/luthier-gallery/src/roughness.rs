@@ -93,6 +93,7 @@ mod tests {
                 lobes: 2,
                 inverse_tails: [1.0; 2],
                 rise: None,
+                short: None,
                 varying,
                 axes: None,
                 painted: None,

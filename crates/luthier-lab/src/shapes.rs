@@ -32,16 +32,16 @@ pub(crate) fn run(options: &ShapesOptions) -> Outcome {
             // Remove what does not belong to a shape, and what would distinguish two materials of one shape.
             material.effects = Default::default();
             material.bake.distribution = Default::default();
-            if keys.iter().any(|known| (known.model, &known.shape) == (model, &shape)) {
-                continue;
-            }
+            // Stacks of one shape may differ in the forms of their lobes.
+            let of_shape = keys.iter().filter(|known| (known.model, &known.shape) == (model, &shape));
+            let known: Vec<Option<LobesForm>> = of_shape.map(|known| known.lobes).collect();
             let of_lobes = luthier_scene::forms(&material)
                 .into_iter()
                 .flatten()
                 .flat_map(|lobes| [RowLayout::Filtered, RowLayout::Steps].map(|layout| (Some(lobes), layout)));
             let of_lobes: Vec<_> = of_lobes.filter(|_| model.is_fitted()).collect();
             let rows = if of_lobes.is_empty() { vec![(None, RowLayout::Filtered)] } else { of_lobes };
-            for (lobes, layout) in rows {
+            for (lobes, layout) in rows.into_iter().filter(|(lobes, _)| !known.contains(lobes)) {
                 material.bake.lobes = lobes;
                 let layout = (layout == RowLayout::Filtered).then_some(layout);
                 let options = Options { fits: false, layout, ..Options::default() };

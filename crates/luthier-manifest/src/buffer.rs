@@ -122,6 +122,7 @@ mod tests {
             lobes: 1,
             inverse_tails: [2.0, 0.0],
             rise: None,
+            short: None,
             varying: None,
             axes: None,
             painted: None,

@@ -44,8 +44,8 @@ pub use choice::{
 pub use color::ColorMode;
 pub use constants::{
     AxesRecord, BeamsRecord, BrighteningRecord, CoatRecord, FamilyRecord, FlakesRecord, GlitterRecord, LobesError,
-    LobesForm, LobesRecord, MaterialConstants, PaintedRecord, PatinaRecord, SideRecord, SlopesRecord, VaryingFactor,
-    VaryingRecord,
+    LobesForm, LobesRecord, MaterialConstants, PaintedRecord, PatinaRecord, ShortRecord, SideRecord, SlopesRecord,
+    VaryingFactor, VaryingRecord,
 };
 pub use error::ManifestError;
 pub use file::FileEntry;

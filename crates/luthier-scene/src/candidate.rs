@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_PI;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use luthier_layers::models::lobes::{FitSettings, Lobes, Traced, Varying, most_searched};
+use luthier_layers::models::lobes::{FitSettings, Lobes, Traced, Varying, may_be_short, most_searched};
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::twins::real_time::Twin;
 use luthier_layers::twins::terms::Exact;
@@ -204,8 +204,12 @@ pub fn forms(material: &Material) -> Vec<Option<LobesForm>> {
     }
     let most = most_searched(&material.stack, None);
     let has_one_width = Varying::axes(None, &material.stack).is_none();
-    let forms = LobesForm::ALL.into_iter().filter(|form| form.most() <= most);
-    forms.filter(|form| has_one_width || *form != LobesForm::OneWidth).map(Some).collect()
+    let is_had = |form: &LobesForm| match form {
+        LobesForm::ShortLobe => may_be_short(&material.stack),
+        LobesForm::OneWidth => has_one_width,
+        LobesForm::NoLobe | LobesForm::OneLobe | LobesForm::TwoLobes | LobesForm::ThreeLobes => true,
+    };
+    LobesForm::ALL.into_iter().filter(|form| form.most() <= most && is_had(form)).map(Some).collect()
 }
 
 /// Lobes of a stack in each of [`LobesForm::ALL`], as bakes fit them.
@@ -215,6 +219,7 @@ fn fits_of(stack: &Stack, color: &Color) -> Vec<Lobes> {
     let fits = LobesForm::ALL.map(|form| {
         let fit = traced.fit(form.most().min(most), 0.0);
         match form {
+            LobesForm::ShortLobe => traced.fit_short().unwrap_or(fit),
             LobesForm::OneWidth => fit.clone().of_one_width().unwrap_or(fit),
             LobesForm::NoLobe | LobesForm::OneLobe | LobesForm::TwoLobes | LobesForm::ThreeLobes => fit,
         }

@@ -40,14 +40,17 @@ pub(crate) enum Widths {
     One,
     /// Lobes have two.
     Two,
+    /// All materials of the model have a short lobe.
+    Short,
 }
 
 impl Widths {
-    pub(crate) const ALL: [Self; 2] = [Self::One, Self::Two];
+    pub(crate) const ALL: [Self; 3] = [Self::Short, Self::One, Self::Two];
 
     fn have(self, candidate: &Candidate) -> bool {
         match candidate.lobes {
-            Some(LobesForm::NoLobe) => true,
+            Some(LobesForm::NoLobe) => self != Self::Short,
+            Some(LobesForm::ShortLobe) => self == Self::Short,
             Some(LobesForm::OneWidth) => self == Self::One,
             Some(LobesForm::OneLobe | LobesForm::TwoLobes | LobesForm::ThreeLobes) => self == Self::Two,
             // Rows over more than the view have two widths.

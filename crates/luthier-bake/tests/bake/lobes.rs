@@ -111,6 +111,26 @@ fn a_tight_limit_takes_a_third_lobe() {
     assert_eq!(last_part(&of(Some(1.01 * two))), 5.0);
 }
 
+/// A metal below a coat of GGX takes one read for a view where a limit allows it, and a diffuse base takes more. All materials of a bake have a short lobe, or none.
+#[test]
+fn a_limit_takes_a_short_lobe() {
+    let lacquered = coated("lacquered", 0.3, &conductor("{ n = 0.2, k = 3.0 }", 0.3));
+    let over_white = dielectric("1.5", 0.3) + &dielectric("1.4", 0.2) + "[[layer]]\ntype = \"diffuse\"\nalbedo = 0.7\n";
+    let mut white = material("white", &over_white, "");
+    white.bake.model = Some(ShadingModel::Lobes);
+    let forms = |materials: &[Material], max_lobe_err: f64| {
+        let budget = Budget { max_lobe_err: Some(max_lobe_err), ..Budget::default() };
+        let baked =
+            bake_with(materials, &Options { budget, ..Options::default() }, &no_images, &Silent, &*STORE).unwrap();
+        let records = baked.materials.iter().map(|material| material.constants.lobes.unwrap());
+        let held = records.inspect(|record| assert!(record.error.unwrap().lobe <= max_lobe_err, "{record:?}"));
+        held.map(|record| LobesForm::of(&record).unwrap()).collect::<Vec<_>>()
+    };
+    assert_eq!(forms(std::slice::from_ref(&lacquered), 0.05), [LobesForm::ShortLobe]);
+    let [with, alone] = [vec![lacquered, white.clone()], vec![white]].map(|materials| forms(&materials, 0.05));
+    assert!([with, alone].iter().flatten().all(|form| *form != LobesForm::ShortLobe));
+}
+
 /// Two lobes in the half vectors of a steep coat seem near at flat views in cells of these half vectors, and are .07 off there. A judge sees that lobes in other half
 /// vectors are nearer.
 #[test]
@@ -219,21 +239,24 @@ fn forms_of_materials_decide_the_rows_of_a_set() {
         coated.bake.lobes = Some(form);
         coated
     };
-    let [none, narrow, one, two, three] = LobesForm::ALL.map(|form| with(form.name(), form));
-    for (materials, last_part) in [
-        ([none.clone(), with("other", LobesForm::NoLobe)], 1.0),
-        ([none.clone(), narrow.clone()], 2.0),
-        ([narrow.clone(), one.clone()], 3.0),
-        ([none.clone(), two.clone()], 5.0),
-        ([two.clone(), three.clone()], 7.0),
+    let [none, short, narrow, one, two, three] = LobesForm::ALL.map(|form| with(form.name(), form));
+    for (materials, ends) in [
+        ([none.clone(), with("other", LobesForm::NoLobe)], [0.0, 1.0]),
+        ([short.clone(), with("other", LobesForm::ShortLobe)], [1.0, 2.0]),
+        ([none.clone(), narrow.clone()], [0.0, 2.0]),
+        ([narrow.clone(), one.clone()], [0.0, 3.0]),
+        ([short.clone(), narrow.clone()], [0.0, 3.0]),
+        ([none.clone(), two.clone()], [0.0, 5.0]),
+        ([two.clone(), three.clone()], [0.0, 7.0]),
     ] {
         let baked = bake_with(&materials, &Options::default(), &no_images, &Silent, &*STORE).unwrap();
         let forms = materials.each_ref().map(|material| material.bake.lobes.unwrap());
-        assert_eq!(atlas(&baked, TableKind::Lobes).layout.y.as_ref().unwrap().max, last_part, "{forms:?}");
+        let parts = atlas(&baked, TableKind::Lobes).layout.y.as_ref().unwrap();
+        assert_eq!([parts.min, parts.max], ends, "{forms:?}");
         for (baked, form) in baked.materials.iter().zip(forms) {
             let record = baked.constants.lobes.unwrap();
-            let has_one_width = last_part == 2.0;
-            assert_eq!((record.lobes as usize, record.rise.is_some()), (form.most(), has_one_width), "{forms:?}");
+            let has = (record.rise.is_some(), record.short.is_some());
+            assert_eq!((record.lobes as usize, has), (form.most(), (ends[1] == 2.0, ends[0] == 1.0)), "{forms:?}");
             assert!(record.error.is_some_and(|error| error.lobe > 0.0));
         }
         // Without fits an outline has the same tables.

@@ -95,6 +95,7 @@ fn scene(first: f32, fresnel: f32, axes: Option<Axes>, format: TexelFormat) -> O
         lobes: 2,
         inverse_tails: [1.0 / NARROW.2, 1.0 / BROAD.2],
         rise: None,
+        short: None,
         varying: None,
         axes: axes.map(|Axes { turn, is_mirrored }| AxesRecord { turn, is_mirrored, tiles }),
         painted: None,

@@ -51,6 +51,7 @@ impl Ask {
 /// Forms of rows in the order of the page: those over the view alone, and any over something beside it.
 pub(super) const FORMS: [Option<LobesForm>; LobesForm::ALL.len() + 1] = [
     Some(LobesForm::NoLobe),
+    Some(LobesForm::ShortLobe),
     Some(LobesForm::OneWidth),
     Some(LobesForm::OneLobe),
     Some(LobesForm::TwoLobes),

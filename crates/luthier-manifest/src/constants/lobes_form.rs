@@ -10,7 +10,7 @@ luthier_lut::named! {
     /// ```
     /// use luthier_manifest::LobesForm;
     ///
-    /// assert_eq!(LobesForm::ALL.map(LobesForm::most), [0, 1, 1, 2, 3]);
+    /// assert_eq!(LobesForm::ALL.map(LobesForm::most), [0, 1, 1, 1, 2, 3]);
     /// assert_eq!(LobesForm::OneWidth.words(), "one lobe of one width");
     /// ```
     #[derive(Serialize, Deserialize)]
@@ -18,6 +18,8 @@ luthier_lut::named! {
     pub enum LobesForm("form of lobes") {
         /// The wide remainder alone, beside one facet of the first interface.
         NoLobe = "no-lobe",
+        /// One lobe, all of whose shape but a shift follows from the view, without a remainder.
+        ShortLobe = "short-lobe",
         /// One lobe, whose other width follows from the view.
         OneWidth = "one-width",
         /// One lobe of two widths.
@@ -34,7 +36,7 @@ impl LobesForm {
     pub const fn most(self) -> usize {
         match self {
             Self::NoLobe => 0,
-            Self::OneWidth | Self::OneLobe => 1,
+            Self::ShortLobe | Self::OneWidth | Self::OneLobe => 1,
             Self::TwoLobes => 2,
             Self::ThreeLobes => 3,
         }
@@ -44,6 +46,7 @@ impl LobesForm {
     pub const fn words(self) -> &'static str {
         match self {
             Self::NoLobe => "no lobe",
+            Self::ShortLobe => "one short lobe",
             Self::OneWidth => "one lobe of one width",
             Self::OneLobe => "one lobe",
             Self::TwoLobes => "two lobes",
@@ -56,6 +59,7 @@ impl LobesForm {
         match (record.varying, record.lobes, record.rise) {
             (Some(_), ..) => None,
             (None, 0, _) => Some(Self::NoLobe),
+            (None, _, Some(_)) if record.short.is_some() => Some(Self::ShortLobe),
             (None, _, Some(_)) => Some(Self::OneWidth),
             (None, 1, None) => Some(Self::OneLobe),
             (None, 2, None) => Some(Self::TwoLobes),

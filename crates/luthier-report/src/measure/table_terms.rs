@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 use luthier_layers::models::lobes::{
-    Axes, Below, Critical, Family, FilmLight, Frame, LOBES, OneWidth, Paint, Painted, Row, Slopes, ViewAxis, Wide,
+    Axes, Below, Critical, Family, FilmLight, Frame, LOBES, OneWidth, Paint, Painted, Row, Shaping, Short, Slopes,
+    ViewAxis, Wide,
 };
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::models::statistics::diffuse_base::Veil;
@@ -14,7 +15,8 @@ use luthier_layers::twins::shaded::{Part, Place};
 use luthier_lut::{TableKind, TexelFormat, Values, WeightBits, read};
 use luthier_manifest::reads;
 use luthier_manifest::{
-    LayerKind, LayerRecord, LobesRecord, MaterialEntry, PaintedRecord, Reflectance, VaryingFactor, VaryingRecord,
+    LayerKind, LayerRecord, LobesRecord, MaterialEntry, PaintedRecord, Reflectance, ShortRecord, VaryingFactor,
+    VaryingRecord,
 };
 use luthier_optics::Rgb;
 use luthier_optics::dielectric_albedo::fresnel_dielectric;
@@ -57,7 +59,9 @@ impl Table<'_> {
 
     /// A sampled row of at most so many lobes.
     pub(crate) fn row(&self, most: usize, tile: u32, cos_theta: f64, weights: Weights) -> Row {
-        Row::within(most, &self.parts(tile, cos_theta, weights), self.has_base())
+        let parts = self.parts(tile, cos_theta, weights);
+        let is_short = self.entry.layout.y.as_ref().is_some_and(|y| y.min == f64::from(Short::FIRST_PART));
+        if is_short { Row::of_short_parts(&parts) } else { Row::within(most, &parts, self.has_base()) }
     }
 
     /// A row of lobes between two tiles.
@@ -192,9 +196,15 @@ impl Lobes {
         let base = record
             .painted
             .map(|PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() });
-        let one_width = record.rise.map(|rise| OneWidth { rise, inverse_tail: record.inverse_tails[0].max(1.0) });
+        let shaping = match (record.rise, record.short) {
+            (Some(rise), Some(ShortRecord { sharpness, reflectance })) => {
+                Shaping::Short(Short { sharpness, rise, reflectance })
+            }
+            (Some(rise), None) => Shaping::OneWidth(OneWidth { rise, inverse_tail: record.inverse_tails[0].max(1.0) }),
+            (None, _) => Shaping::Rows,
+        };
         let frame =
-            Frame { index: record.index, wide: Wide::new(record.falloff, axis), axes, base, stretch: None, one_width };
+            Frame { index: record.index, wide: Wide::new(record.falloff, axis), axes, base, stretch: None, shaping };
         let tail = 1.0 / record.inverse_tails[0].max(1.0);
         let most = most_lobes(record);
         Self { tile, axis, frame, most, varying: record.varying, tail, family: None }
@@ -528,7 +538,12 @@ fn read_by(entry: &MaterialEntry) -> impl Iterator<Item = (usize, TableKind)> {
 }
 
 impl Terms for TableTerms<'_> {
+    /// A short lobe has a reflectance of the first interface of its own.
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
+        let short = self.lobes.as_ref().and_then(|lobes| lobes.frame.shaping.short()).filter(|_| layer == 0);
+        if let Some(short) = short {
+            return [short.reflected(cos_theta_d); 3];
+        }
         if let Some(reflected) = computed(&self.records[layer], cos_theta_d) {
             return self.passed(layer, cos_theta_d, reflected);
         }

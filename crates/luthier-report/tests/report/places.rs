@@ -163,6 +163,7 @@ fn lacquered() -> (Bake, Vec<SurfaceMap>) {
         lobes: 2,
         inverse_tails: [1.0; 2],
         rise: None,
+        short: None,
         varying: Some(VaryingRecord {
             factor: VaryingFactor::SlabFactor,
             tiles: varied.nodes.len() as u32,

@@ -100,10 +100,11 @@ impl Features {
                 let sides: Vec<MaterialEntry> = set.materials.iter().filter_map(MaterialEntry::side).collect();
                 let lobes: Vec<u32> = set.materials.iter().chain(&sides).filter_map(lobes_of).collect();
                 // Part 0 is the remainder, and the last part of at most two lobes the albedo. In between are two parts for each lobe, or one where it has one
-                // width. A third lobe has two parts behind the albedo. Families have two lobes, whatever their parts.
+                // width. A short lobe has the first of these alone. A third lobe has two parts behind the albedo. Families have two lobes, whatever their parts.
                 let (words, most): (&[Feature], u32) = match parts.max as u32 {
                     _ if lobes.contains(&3) => (&[Feature::TwoLobes, Feature::ThreeLobes], 3),
                     _ if names.contains(&Feature::LobesFamily) => (&[Feature::TwoLobes], 2),
+                    2 if parts.min == 1.0 => (&[Feature::OneLobe, Feature::LobesOneWidth, Feature::LobesShort], 1),
                     2 => (&[Feature::OneLobe, Feature::LobesOneWidth], 1),
                     3 => (&[Feature::OneLobe], 1),
                     5.. => (&[Feature::TwoLobes], 2),

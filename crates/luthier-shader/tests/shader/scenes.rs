@@ -211,6 +211,7 @@ fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
         lobes: 2,
         inverse_tails: [1.0, 40.0],
         rise: None,
+        short: None,
         varying: None,
         axes: None,
         painted: None,

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::rows::{FINE_ROWS, KEPT, ROWS, is_family, varying};
+use super::shape::Widths;
 use crate::graph::{Artefact, Inputs, Job, JobKind, Store, result_of};
 use crate::json;
 
@@ -64,11 +65,13 @@ pub(super) struct Fit {
     errors: Vec<FitError>,
     /// Errors with [`OneWidth`](luthier_layers::models::lobes::OneWidth), of a search where lobes have it.
     pub(super) of_one_width: Option<Vec<FitError>>,
+    /// A [short lobe](luthier_layers::models::lobes::Short) in place of one lobe with its errors, of a search where the material has one.
+    pub(super) short: Option<(Varied, Vec<FitError>)>,
 }
 
 impl Fit {
     fn new(varied: Varied, judge: &Judge) -> Self {
-        Self { errors: errors(&varied, judge), varied, of_one_width: None }
+        Self { errors: errors(&varied, judge), varied, of_one_width: None, short: None }
     }
 
     /// With the errors of lobes of one width.
@@ -78,15 +81,22 @@ impl Fit {
     }
 
     /// The error with so many rows. More than a fit has show the same light.
-    pub(super) fn error(&self, has_one_width: bool, rows: usize) -> FitError {
-        let errors = self.of_one_width.as_ref().filter(|_| has_one_width).unwrap_or(&self.errors);
+    pub(super) fn error(&self, widths: Widths, rows: usize) -> FitError {
+        let errors = match (widths, &self.of_one_width, &self.short) {
+            (Widths::One, Some(errors), _) | (Widths::Short, _, Some((_, errors))) => errors,
+            _ => &self.errors,
+        };
         errors[KEPT.iter().position(|kept| *kept == rows).unwrap_or(0)]
     }
 
-    /// The lobes, with one width if so.
-    pub(super) fn shaped(&self, has_one_width: bool) -> Varied {
-        let narrowed = has_one_width.then(|| self.varied.clone().of_one_width()).flatten();
-        narrowed.unwrap_or_else(|| self.varied.clone())
+    /// The lobes, with these widths if they have them.
+    pub(super) fn shaped(&self, widths: Widths) -> Varied {
+        let other = match widths {
+            Widths::Two => None,
+            Widths::One => self.varied.clone().of_one_width(),
+            Widths::Short => self.short.as_ref().map(|(varied, _)| varied.clone()),
+        };
+        other.unwrap_or_else(|| self.varied.clone())
     }
 
     /// Relative index of the medium of the lobes.
@@ -171,7 +181,7 @@ impl Job for FitJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 15 } else { 11 }
+        if is_family(self.varying) { 16 } else { 12 }
     }
 
     fn inputs(&self) -> Value {
@@ -212,7 +222,10 @@ impl Job for FitJob {
         let fits = nearest(&traced, &media, most, &judge).into_iter().enumerate();
         let fits = fits.map(|(most, fit)| if most <= 1 { fit.and_of_one_width(&judge) } else { fit });
         let mut fits: Vec<Fit> = fits.collect();
-        if fits.len() == FINE && fits.iter().all(|fit| fit.error(false, ROWS).lobe > WANTED) {
+        if let Some(one) = fits.get_mut(1) {
+            one.short = short(&traced, keeps_medium.then_some(one.index()), &judge);
+        }
+        if fits.len() == FINE && fits.iter().all(|fit| fit.error(Widths::Two, ROWS).lobe > WANTED) {
             let fine =
                 Traced::new(stack, color, *varying, FitSettings { rows: FINE_ROWS, ..FitSettings::of(*varying) });
             let medium = fine.media().iter().position(|index| *index == fits[most].index()).unwrap_or(0);
@@ -231,19 +244,28 @@ impl Job for FitJob {
 fn nearest(traced: &Traced, media: &[f64], most: usize, judge: &Judge) -> Vec<Fit> {
     let judged = |fits: Vec<Varied>| fits.into_iter().map(|varied| Fit::new(varied, judge)).collect::<Vec<Fit>>();
     let mut fits = judged(traced.fit_each(most));
-    if fits.iter().skip(1).all(|fit| fit.error(false, ROWS).lobe <= NEAR) {
+    if fits.iter().skip(1).all(|fit| fit.error(Widths::Two, ROWS).lobe <= NEAR) {
         return fits;
     }
     let usual = fits[most].index();
     for (medium, _) in media.iter().enumerate().filter(|(_, index)| **index != usual) {
         let others = judged(traced.in_medium(medium).fit_each(most));
         for (fit, other) in fits.iter_mut().zip(others).skip(1) {
-            if other.error(false, ROWS).lobe < CLEAR * fit.error(false, ROWS).lobe {
+            if other.error(Widths::Two, ROWS).lobe < CLEAR * fit.error(Widths::Two, ROWS).lobe {
                 *fit = other;
             }
         }
     }
     fits
+}
+
+/// A short lobe in the medium where a judge finds it nearest, or in one of a given index.
+fn short(traced: &Traced, index: Option<f64>, judge: &Judge) -> Option<(Varied, Vec<FitError>)> {
+    let media = traced.media().into_iter().enumerate().filter(|(_, own)| index.is_none_or(|index| index == *own));
+    let fits = media.filter_map(|(medium, _)| traced.in_medium(medium).fit_short());
+    let judged = fits.map(|varied| (errors(&varied, judge), varied));
+    let nearest = judged.min_by(|(a, _), (b, _)| a[0].lobe.total_cmp(&b[0].lobe));
+    nearest.map(|(errors, varied)| (varied, errors))
 }
 
 /// The lobe error at which a search looks for no other medium.

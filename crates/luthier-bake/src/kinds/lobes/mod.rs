@@ -19,7 +19,7 @@ use luthier_material::Material;
 
 use self::fit::{FINE, FitJob, Fits, fit};
 use self::rows::{FINE_ROWS, KEPT, of_model, side};
-use self::shape::{HIDDEN_READS, ONE_WIDTH_LAST, parts, reads, shape, shape_of_one_width, shape_with};
+use self::shape::{HIDDEN_READS, Widths, parts, reads, shape_of, shape_with};
 use self::tile::LobesJob;
 use super::{Kind, Site};
 use crate::BakeError;
@@ -43,7 +43,7 @@ pub(crate) struct Table;
 impl Kind for Table {
     fn fixed(&self, Ask(materials): Ask<'_>) -> Result<Shape, BakeError> {
         let most = of_model(materials).map(|material| material.bake.lobes.map_or(LOBES, LobesForm::most)).max();
-        Ok(shape_with(materials, most.unwrap_or(LOBES), RowLayout::Filtered.format()))
+        Ok(shape_with(materials, Widths::of(materials), most.unwrap_or(LOBES), RowLayout::Filtered.format()))
     }
 
     /// A tile for the first layer, whose lobes contain the light of all layers below.
@@ -92,6 +92,7 @@ pub(crate) fn decide(
 ) -> Result<Option<Search>, Broken> {
     let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
     let given = settings.fixed(TableKind::Lobes).format;
+    let are_short = fits.iter().all(|fits| fits.of(Some(1)).short.is_some()) && of_model(materials).all(has_lone_rows);
     // Few reads of textures hide behind arithmetic.
     let format_of = |reads: usize| {
         let hides = options.layout.is_none() && reads <= HIDDEN_READS;
@@ -105,29 +106,31 @@ pub(crate) fn decide(
             Some(results.get::<Fits>(fit(material, most.is_some()).key())?.of(most).lobes())
         });
         let lobes = lobes.max().unwrap_or(0);
-        settings.take_lobes(shape_with(materials, lobes, format_of(reads(lobes))));
+        let widths = match Widths::of(materials) {
+            Widths::Short if !are_short => Widths::Two,
+            widths => widths,
+        };
+        settings.take_lobes(shape_with(materials, widths, lobes, format_of(reads(lobes))));
         return Ok(None);
     }
     let have_one_width = fits.iter().all(|fits| fits.of(Some(1)).of_one_width.is_some());
     let most = fits.iter().map(|fits| fits.most()).max().unwrap_or(0);
-    let steps = (0..=most.min(LOBES_MAX)).map(|most| (most, false)).chain(have_one_width.then_some((1, true)));
-    let choices: Vec<(usize, bool, usize)> = steps
-        .flat_map(|(most, has_one_width)| KEPT.map(|rows| (most, has_one_width, rows)))
-        .chain((most == FINE).then_some((FINE, false, FINE_ROWS)))
+    let others = [(have_one_width, Widths::One), (are_short, Widths::Short)];
+    let steps = (0..=most.min(LOBES_MAX)).map(|most| (most, Widths::Two));
+    let steps = steps.chain(others.into_iter().filter(|(are, _)| *are).map(|(_, widths)| (1, widths)));
+    let choices: Vec<(usize, Widths, usize)> = steps
+        .flat_map(|(most, widths)| KEPT.map(|rows| (most, widths, rows)))
+        .chain((most == FINE).then_some((FINE, Widths::Two, FINE_ROWS)))
         .collect();
-    let shape_of = |(most, has_one_width, rows): (usize, bool, usize)| {
+    let shape_of = |(most, widths, rows): (usize, Widths, usize)| {
         let lobes = lobes_of(&fits, most);
-        let parts = parts(materials, lobes);
-        match has_one_width {
-            true => shape_of_one_width(parts, rows, format_of(ONE_WIDTH_LAST as usize)),
-            false => shape(parts, rows, format_of(reads(lobes))),
-        }
+        shape_of(widths, parts(materials, lobes), rows, format_of(widths.reads(lobes)))
     };
-    let candidates = choices.iter().map(|&(most, has_one_width, rows)| {
-        let errors = fits.iter().map(|fits| fits.of(Some(most)).error(has_one_width, rows));
+    let candidates = choices.iter().map(|&(most, widths, rows)| {
+        let errors = fits.iter().map(|fits| fits.of(Some(most)).error(widths, rows));
         let error = errors.fold(FitError::default(), FitError::max);
         let tiles = fits.iter().map(|fits| fits.of(Some(most)).varied.tiles() as u32).sum();
-        let Shape { x, y, base, format } = shape_of((most, has_one_width, rows));
+        let Shape { x, y, base, format } = shape_of((most, widths, rows));
         let cost = cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * cost::read(format);
         let apron = apron(std::iter::once(&x).chain(&y));
         let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron, columns: 1, tiles, base };
@@ -139,14 +142,14 @@ pub(crate) fn decide(
     let found = std::slice::from_ref(&found);
     let chosen = locked(found, options.locked, budget, 0).map_or_else(|| choose(found, budget, 0), Ok);
     let chosen = chosen.map_err(|refusal| {
-        let (most, has_one_width, rows) = match &refusal {
+        let (most, widths, rows) = match &refusal {
             Refusal::Error { nearest: (_, nearest), .. } => choices[*nearest],
             Refusal::Whole { .. } => choices[0],
         };
         let errors = materials.iter().enumerate().filter_map(|(number, material)| {
             let fits = [Some(fit(material, true)), side(material).map(|side| fit(&side, true))];
             let fits = fits.into_iter().flatten().filter_map(|job| results.get::<Fits>(job.key()));
-            let errors = fits.map(|fits| fits.of(Some(most)).error(has_one_width, rows));
+            let errors = fits.map(|fits| fits.of(Some(most)).error(widths, rows));
             Some((number, measured(errors.reduce(FitError::max)?)))
         });
         (refusal, errors.collect())

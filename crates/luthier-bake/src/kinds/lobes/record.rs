@@ -1,15 +1,18 @@
 //! The view-independent numbers of rows, for manifests.
 
-use luthier_layers::models::lobes::{Axes, Critical, Family, FitError, Painted, SlopeAxis, Varying, base_below};
+use luthier_layers::models::lobes::{
+    Axes, Critical, Family, FitError, OneWidth, Painted, Shaping, Short, SlopeAxis, Varying, base_below,
+};
 use luthier_lut::{Image, TableKind, TexelFormat};
 use luthier_manifest::{
-    AxesRecord, FamilyRecord, LobesError, LobesRecord, PaintedRecord, SlopesRecord, VaryingFactor, VaryingRecord,
+    AxesRecord, FamilyRecord, LobesError, LobesRecord, PaintedRecord, ShortRecord, SlopesRecord, VaryingFactor,
+    VaryingRecord,
 };
 use luthier_material::Material;
 
 use super::fit::{Fits, fit};
 use super::rows::{has_base, is_family, most, varying};
-use super::shape::{have_one_width, is_of_one_width};
+use super::shape::Widths;
 use crate::graph::{Job, Results};
 use crate::settings::Settings;
 
@@ -24,11 +27,15 @@ pub(super) const UNFITTED: LobesRecord = LobesRecord {
     lobes: 2,
     inverse_tails: [1.0; 2],
     rise: None,
+    short: None,
     varying: None,
     axes: None,
     painted: None,
     error: None,
 };
+
+/// Numbers of a short lobe where nothing was fitted.
+const UNFITTED_SHORT: ShortRecord = ShortRecord { sharpness: [5.0, 0.0, 0.0], reflectance: [0.04, 0.25, 0.25] };
 
 /// The view-independent numbers of a material's lobes; [`UNFITTED`] in an outline without fits.
 pub(crate) fn record(material: &Material, settings: &Settings, results: &Results) -> LobesRecord {
@@ -55,19 +62,28 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         let unfitted = LobesRecord { axes, painted, varying, ..UNFITTED };
         return match material.bake.lobes {
             Some(form) => {
-                let rise = have_one_width(std::slice::from_ref(material)).then_some(0.0);
-                LobesRecord { lobes: form.most() as u32, rise, ..unfitted }
+                let widths = Widths::of(std::slice::from_ref(material));
+                let rise = (widths != Widths::Two).then_some(0.0);
+                let short = (widths == Widths::Short).then_some(UNFITTED_SHORT);
+                LobesRecord { lobes: form.most() as u32, rise, short, ..unfitted }
             }
             None => unfitted,
         };
     };
     let fit = fits.of(most);
-    let has_one_width = shape.y.as_ref().is_some_and(is_of_one_width);
-    let varied = fit.shaped(has_one_width);
-    let FitError { lobe, lobe_noise, albedo, albedo_noise } = fit.error(has_one_width, shape.x.size as usize);
+    let widths = shape.y.as_ref().map_or(Widths::Two, Widths::in_parts);
+    let varied = fit.shaped(widths);
+    let FitError { lobe, lobe_noise, albedo, albedo_noise } = fit.error(widths, shape.x.size as usize);
     let error = Some(LobesError { lobe, lobe_noise, albedo, albedo_noise });
     let lobes = &varied.nodes[0];
     let (wide, Critical { cot_sq, width, plain_share }) = (lobes.frame.wide, lobes.axis.critical());
+    let (inverse_tails, rise, short) = match lobes.frame.shaping {
+        Shaping::Rows => (varied.stored(0, 0).inverse_tails(), None, None),
+        Shaping::OneWidth(OneWidth { rise, inverse_tail }) => ([inverse_tail, 0.0], Some(rise), None),
+        Shaping::Short(Short { sharpness, rise, reflectance }) => {
+            ([1.0, 0.0], Some(rise), Some(ShortRecord { sharpness, reflectance }))
+        }
+    };
     LobesRecord {
         index: lobes.frame.index,
         falloff: wide.falloff(),
@@ -75,15 +91,10 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         critical_cot_sq: cot_sq,
         critical_width: width,
         critical_plain_share: plain_share,
-        lobes: fit.lobes() as u32,
-        inverse_tails: texels_of(
-            lobes
-                .frame
-                .one_width
-                .map_or(varied.stored(0, 0).inverse_tails(), |one_width| [one_width.inverse_tail, 0.0]),
-            shape.format,
-        ),
-        rise: lobes.frame.one_width.map(|one_width| one_width.rise),
+        lobes: lobes.rows[0].lobes.len() as u32,
+        inverse_tails: texels_of(inverse_tails, shape.format),
+        rise,
+        short,
         varying: varied.varying().map(|varying| VaryingRecord {
             factor: match varying {
                 Varying::Alpha => VaryingFactor::AlphaFactor,

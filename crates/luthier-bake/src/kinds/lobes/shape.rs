@@ -1,7 +1,7 @@
 //! Shapes of tiles of lobes: parts of rows, numbers of rows, layouts.
 
 use luthier_layers::models::lobes::{
-    Family, FitSettings, LOBES, LOBES_MAX, Paint, Row, Varied, Varying, base_below, shown,
+    Family, FitSettings, LOBES, LOBES_MAX, Paint, Row, Short, Varied, Varying, base_below, shown,
 };
 use luthier_lut::{Axis, Mapping, RowLayout, TexelFormat};
 use luthier_manifest::{Budget, LobesForm};
@@ -61,7 +61,7 @@ pub(crate) fn layout(materials: &[Material], options: &Options<'_>, asked: &Budg
     let is_alone =
         |material: &Material| has_one_tile(material) && side(material).is_none_or(|side| has_one_tile(&side));
     let reads = of_model(materials).map(|material| material.bake.lobes.map_or(LOBES, LobesForm::most)).map(reads).max();
-    let hides = have_one_width(materials) || reads.is_some_and(|reads| reads <= HIDDEN_READS);
+    let hides = Widths::of(materials) != Widths::Two || reads.is_some_and(|reads| reads <= HIDDEN_READS);
     options.layout.unwrap_or_else(|| {
         let has_room = asked.max_bytes.is_none() && options.formats.has(RowLayout::Steps.format());
         let in_steps = has_room && !hides && of_model(materials).all(is_alone);
@@ -87,30 +87,63 @@ pub(super) fn reads(lobes: usize) -> usize {
 /// and three do not (8.2 and 7.5).
 pub(super) const HIDDEN_READS: usize = 2;
 
-/// The shape of tiles whose rows have one lobe of one width.
-pub(super) fn shape_of_one_width([first, _]: [i32; 2], rows: usize, format: TexelFormat) -> Shape {
-    shape([first, ONE_WIDTH_LAST], rows, format)
+/// The shape of tiles with these widths, whose parts would otherwise go from the first to the last.
+pub(super) fn shape_of(widths: Widths, [first, last]: [i32; 2], rows: usize, format: TexelFormat) -> Shape {
+    match widths {
+        Widths::Two => shape([first, last], rows, format),
+        Widths::One => shape([first, ONE_WIDTH_LAST], rows, format),
+        Widths::Short => shape([Short::FIRST_PART, ONE_WIDTH_LAST], rows, format),
+    }
 }
 
 /// The shape of the tiles of materials with at most so many lobes, with the rows that suffice for all.
-pub(super) fn shape_with(materials: &[Material], lobes: usize, format: TexelFormat) -> Shape {
-    let parts = parts(materials, lobes);
-    let of = if have_one_width(materials) { shape_of_one_width } else { shape };
-    of(parts, common_rows(materials), format)
+pub(super) fn shape_with(materials: &[Material], widths: Widths, lobes: usize, format: TexelFormat) -> Shape {
+    shape_of(widths, parts(materials, lobes), common_rows(materials), format)
 }
 
-/// Whether the forms of materials give their rows one width.
-pub(super) fn have_one_width(materials: &[Material]) -> bool {
-    let mut forms = of_model(materials).map(|material| material.bake.lobes);
-    let mut known = of_model(materials).map(|material| material.bake.lobes);
-    forms.any(|form| form == Some(LobesForm::OneWidth))
-        && known.all(|form| matches!(form, Some(LobesForm::OneWidth | LobesForm::NoLobe)))
+/// Widths that rows have for a lobe.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Widths {
+    /// Two for each lobe.
+    Two,
+    /// One for a single lobe.
+    One,
+    /// None, for a short lobe.
+    Short,
+}
+
+impl Widths {
+    /// Widths that the forms of materials ask for.
+    pub(super) fn of(materials: &[Material]) -> Self {
+        let forms: Vec<Option<LobesForm>> = of_model(materials).map(|material| material.bake.lobes).collect();
+        let all = |has: fn(LobesForm) -> bool| forms.iter().all(|form| form.is_some_and(has));
+        match forms.as_slice() {
+            [] => Self::Two,
+            _ if all(|form| form == LobesForm::ShortLobe) => Self::Short,
+            _ if all(|form| form == LobesForm::NoLobe) => Self::Two,
+            _ if all(|form| matches!(form, LobesForm::OneWidth | LobesForm::NoLobe)) => Self::One,
+            _ => Self::Two,
+        }
+    }
+
+    /// Widths of tiles with such parts.
+    pub(super) fn in_parts(parts: &Axis) -> Self {
+        match [parts.min, parts.max].map(|part| part as i32) {
+            [Short::FIRST_PART, ONE_WIDTH_LAST] => Self::Short,
+            [_, ONE_WIDTH_LAST] => Self::One,
+            _ => Self::Two,
+        }
+    }
+
+    /// Parts of rows with so many lobes that the light of a view takes.
+    pub(super) fn reads(self, lobes: usize) -> usize {
+        match self {
+            Self::Two => reads(lobes),
+            Self::One => 2,
+            Self::Short => 1,
+        }
+    }
 }
 
 /// Number of the last part of rows with one lobe of one width: light takes the parts before it. No other rows end there.
-pub(super) const ONE_WIDTH_LAST: i32 = 2;
-
-/// Whether rows of tiles with such parts have one lobe of one width.
-pub(super) fn is_of_one_width(parts: &Axis) -> bool {
-    parts.max == f64::from(ONE_WIDTH_LAST)
-}
+const ONE_WIDTH_LAST: i32 = 2;

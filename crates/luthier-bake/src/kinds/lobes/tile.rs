@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::fit::{FitJob, Fits, factor_name, with_rows};
 use super::rows::is_family;
-use super::shape::is_of_one_width;
+use super::shape::Widths;
 use crate::graph::{Artefact, Inputs, Job, JobKind};
 use crate::json;
 use crate::tile::{TileData, color_in_words, lone_tile};
@@ -23,6 +23,8 @@ pub(super) enum Parts {
     Lobes(usize, bool),
     /// With one lobe of one width, and the light of a base or without its parts.
     OneWidth(bool),
+    /// With a short lobe.
+    Short,
     /// Of a family, with lobes of this tail.
     Family(Family, f64),
 }
@@ -35,7 +37,7 @@ impl Parts {
                 Row { base: has_base.then(|| row.base.unwrap_or_default()), ..row.filled(most) }
             }
             Self::OneWidth(has_base) => Self::Lobes(1, has_base).filled(row),
-            Self::Family(..) => row,
+            Self::Short | Self::Family(..) => row,
         }
     }
 
@@ -44,6 +46,7 @@ impl Parts {
         match self {
             Self::Lobes(..) => self.filled(row).to_parts(),
             Self::OneWidth(_) => self.filled(row).to_parts_of_one_width(),
+            Self::Short => row.to_parts_of_short(),
             Self::Family(family, _) => family.to_parts(&row),
         }
     }
@@ -53,6 +56,7 @@ impl Parts {
         match self {
             Self::Lobes(most, has_base) => Row::within(most, parts, has_base),
             Self::OneWidth(has_base) => Row::of_parts(parts, has_base),
+            Self::Short => Row::of_short_parts(parts),
             Self::Family(family, tail) => family.of_parts(family.first_part(), parts, tail),
         }
     }
@@ -96,18 +100,19 @@ impl Job for LobesJob {
     fn run(&self, inputs: &Inputs<'_>) -> Artefact {
         let [x, y] = &self.axes;
         let fits: &Fits = inputs.part(self.fit.as_ref());
-        let varied = with_rows(fits.of(self.most).shaped(is_of_one_width(y)), x.size as usize);
+        let varied = with_rows(fits.of(self.most).shaped(Widths::in_parts(y)), x.size as usize);
         let (lobes, tile) = varied.tile(self.tile);
         let most = (y.max as usize + 1 - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
-        let layout = match varied.varying() {
-            Some(Varying::Family(family)) => Parts::Family(family, 1.0 / varied.stored(0, 0).inverse_tails()[0]),
-            _ if is_of_one_width(y) => Parts::OneWidth(y.min < 0.0),
-            _ => Parts::Lobes(most.min(LOBES).max(lobes.rows[0].lobes.len()), y.min < 0.0),
+        let layout = match (varied.varying(), Widths::in_parts(y)) {
+            (Some(Varying::Family(family)), _) => Parts::Family(family, 1.0 / varied.stored(0, 0).inverse_tails()[0]),
+            (_, Widths::Short) => Parts::Short,
+            (_, Widths::One) => Parts::OneWidth(y.min < 0.0),
+            (_, Widths::Two) => Parts::Lobes(most.min(LOBES).max(lobes.rows[0].lobes.len()), y.min < 0.0),
         };
         // Parts of families begin with their own, where those of a base have a place before it.
         let first = match layout {
             Parts::Family(family, _) => (f64::from(family.first_part()) - y.min) as u32,
-            Parts::Lobes(..) | Parts::OneWidth(_) => 0,
+            Parts::Lobes(..) | Parts::OneWidth(_) | Parts::Short => 0,
         };
         // Parts lie side by side. The first and the last node of each are repeated, so that filtering does not mix in a
         // neighbour.

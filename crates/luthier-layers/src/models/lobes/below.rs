@@ -51,9 +51,7 @@ impl Below {
     pub fn new(frame: Frame, row: Row, wo: DVec3) -> Self {
         let sin = libm::hypot(wo.x, wo.y);
         let mut row = row;
-        if let Some(one_width) = frame.one_width {
-            row.lobes.iter_mut().for_each(|lobe| *lobe = one_width.shaped(*lobe, sin));
-        }
+        row.lobes.iter_mut().for_each(|lobe| *lobe = frame.shaping.shaped(*lobe, sin));
         let (turn, at, shapes): ([f64; 2], DVec3, Vec<Shape>) = match frame.axes {
             None => {
                 let turn = if sin > 0.0 { [wo.x / sin, wo.y / sin] } else { [1.0, 0.0] };

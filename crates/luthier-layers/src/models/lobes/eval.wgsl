@@ -106,6 +106,60 @@ fn luthier_wide_shape(prepared: LuthierPreparedLobes, cos_theta: f32) -> f32 {
     return max(1.0 - prepared.medium.y * (away_sq * away_sq * away) - prepared.medium.z * away_sq, 0.0);
 }
 
+//? lobes_short
+/// Reflectance of the first interface beside a short lobe, at the cosine of a facet: a polynomial of the cube of 1 less the cosine.
+fn luthier_short_reflectance(numbers: vec4<f32>, cos_theta_d: f32) -> f32 {
+    let away = 1.0 - cos_theta_d;
+    let cube = away * away * away;
+    return numbers.x + cube * (numbers.y + cube * (numbers.z + cube * numbers.w));
+}
+
+/// Reflectance of the first interface at the cosine of a facet.
+fn luthier_first_reflectance(prepared: LuthierPreparedLobes, cos_theta_d: f32) -> vec3<f32> {
+    //? lobes_short
+    return vec3<f32>(luthier_short_reflectance(prepared.reflectance, cos_theta_d));
+    //? else
+    return luthier_fresnel_term(prepared.coat, cos_theta_d);
+}
+
+//? lobes_short
+/// f cos_theta_i of a prepared material with a short lobe for light from wi, above the horizon.
+fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
+    let wo = prepared.wo;
+    let sum = vec3<f32>(wi.xy + wo.xy, max(wi.z + wo.z, 1e-16));
+    let across_sq = dot(sum.xy, sum.xy);
+    //? beckmann|free_slopes
+    {
+        let masking = prepared.masking + luthier_slope_lambda(prepared.coat, luthier_coat_across_sq(prepared.coat, wi), wi.z);
+        let facets = luthier_quarter_density(prepared.coat, sum) / (masking * wo.z);
+    }
+    //? else
+    {
+        // Of GGX 1 + 2 Lambda is a root over the cosine. The first interface is isotropic.
+        let roots = prepared.coat_roots;
+        let masking = wi.z / (sqrt(roots.x + wi.z * wi.z * roots.y) * roots.w + wi.z * roots.z);
+        let facets = luthier_distribution_term(prepared.coat, 1.0, sum.z * sum.z, across_sq) * masking;
+    }
+    let first = luthier_short_reflectance(prepared.reflectance, 0.5 * length(sum)) * facets;
+    //? lobes_tilted
+    let lobe = luthier_density_below(prepared.first_shape, luthier_sum_below(prepared, wi));
+    //? else
+    {
+        // The sum of refracted directions times the index has the same coordinates along the surface. 1 and the squared distance from the middle of the lobe, times its
+        // squared z, are a quadratic form of it.
+        let inside_cos_sq = wi.z * wi.z + prepared.medium.x;
+        let inverse_cos = inverseSqrt(inside_cos_sq);
+        let z = inside_cos_sq * inverse_cos + prepared.inside_cos;
+        let along = dot(prepared.azimuth, sum.xy);
+        let form = prepared.form;
+        let falloff = 1.0 / (across_sq * form.x + z * z * form.y + along * (along * form.z + z * form.w));
+        let factor = (across_sq + z * z) * z * (inverse_cos * wi.z);
+        let lobe = falloff * falloff * factor * prepared.first_shape.peak;
+    }
+    return prepared.first_strength * lobe + first;
+}
+
+//? !lobes_short
 /// f cos_theta_i of a prepared material for light from wi, above the horizon.
 fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
     let wo = prepared.wo;

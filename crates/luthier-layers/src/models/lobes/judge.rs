@@ -3,6 +3,7 @@
 use std::f64::consts::FRAC_2_PI;
 
 use glam::DVec3;
+use luthier_model::Masking;
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{FilmThickness, Stack};
@@ -10,8 +11,8 @@ use luthier_optics::stack::{FilmThickness, Stack};
 use super::fit::{Covariance, cells, covariances, indices};
 use super::tally::Cells;
 use super::{
-    Axes, Below, Family, FirstInterface, FitSettings, Lobes, Mix, Paint, Slopes, Varied, Varying, ViewAxis, base_below,
-    patina, shown,
+    Axes, Below, Family, FirstInterface, FitSettings, Lobes, Mix, Paint, Short, Slopes, Varied, Varying, ViewAxis,
+    base_below, patina, shown,
 };
 use crate::references::layered_mc::ColorPaths;
 
@@ -57,6 +58,7 @@ impl FitError {
 /// Light of a stack at a few views, as many paths show it.
 #[derive(Debug)]
 pub struct Judge {
+    first: Option<FirstInterface>,
     axes: Option<Axes>,
     views: Vec<View>,
 }
@@ -123,7 +125,7 @@ impl Judge {
             let here = varying.map_or_else(|| stack.clone(), |varying| varying.apply(&stack, factor));
             View::new(&here, color, seed, (factor, wo), cells_of(&covariances(&stack, axes), axes), axes)
         });
-        Self { axes, views: views.collect() }
+        Self { first: FirstInterface::of(&stack, color), axes, views: views.collect() }
     }
 
     /// The errors of lobes of the stack, over the same factor.
@@ -144,14 +146,32 @@ impl Judge {
     /// The largest errors that the cells of any medium show.
     fn error_at(&self, view: &View, lobes: &Lobes) -> FitError {
         let Some(below) = lobes.below(view.wo) else { return FitError::default() };
-        let errors = view.counted.iter().map(|counted| self.error_in(counted, view, &below));
+        let short = lobes.frame.shaping.short();
+        let errors = view.counted.iter().map(|counted| self.error_in(counted, view, &below, short));
         errors.fold(FitError::default(), FitError::max)
     }
 
-    fn error_in(&self, Counted { cells, energies, squares }: &Counted, view: &View, below: &Below) -> FitError {
+    /// Light of the first interface is known, and not counted. A short lobe has another reflectance of it: what that adds is counted.
+    fn error_in(
+        &self,
+        Counted { cells, energies, squares }: &Counted,
+        view: &View,
+        below: &Below,
+        short: Option<Short>,
+    ) -> FitError {
         let at = self.axes.map_or(view.wo, |axes| axes.inside(view.wo));
         let mut found = vec![[0.0; 3]; energies.len()];
-        let by_cell = cells.light(at, |wi| below.eval(self.axes.map_or(wi, |axes| axes.outside(wi))));
+        let added = |wi| {
+            let (first, short) = (self.first.as_ref()?, short?);
+            let lobe = first.facets.lobe(Masking::Smith, wi, view.wo)?;
+            let own = first.reflectance.rgb(lobe.cos_theta_d);
+            Some(own.map(|own| lobe.value * (short.reflected(lobe.cos_theta_d) - own)))
+        };
+        let by_cell = cells.light(at, |wi| {
+            let wi = self.axes.map_or(wi, |axes| axes.outside(wi));
+            let (light, added) = (below.eval(wi), added(wi).unwrap_or_default());
+            [0, 1, 2].map(|c: usize| light[c] + added[c])
+        });
         for (cell, light) in by_cell.into_iter().enumerate() {
             let wider = &mut found[cells.wider(cell)];
             (0..3).for_each(|c| wider[c] += light[c]);
@@ -326,8 +346,9 @@ mod tests {
         let judge = Judge::new(&stack, &COLOR, None);
         let inside = simulation.in_cells(1).fit(LOBES);
         let view = &judge.views[0];
-        let [outside, own] = [0, 1]
-            .map(|medium: usize| judge.error_in(&view.counted[medium], view, &inside.below(view.wo).unwrap()).lobe);
+        let [outside, own] = [0, 1].map(|medium: usize| {
+            judge.error_in(&view.counted[medium], view, &inside.below(view.wo).unwrap(), None).lobe
+        });
         assert!(own < 0.02 && outside > 0.04, "{own} {outside}");
         assert!(judge.error_of(|_| inside.clone()).lobe > 0.04);
     }

@@ -16,6 +16,8 @@
 //!   share them.
 //! - **Energies.** E are energies by channel, taken from the simulation view by view, and A is the share of a shape above the horizon. So
 //!   the directional albedo of a row is that of the simulation, whatever the shapes are.
+//! - **A short lobe** ([`Short`]) pays for less: one lobe with the tail of GGX takes the light of the remainder, too, its widths are polynomials of the view, and the
+//!   first interface reflects by a polynomial of the cosine. A row is one read. The energy that the polynomial gets wrong is taken from the lobe.
 //! - **A Lambertian base** sends light that does not remember from where it came. It has one shape at all views, that of the remainder, and a closed
 //!   form in the albedo ([`BaseLight`]). Rows store it apart, so that places can recolour the base without a new fit.
 //! - **Rows.** Everything that depends on the view is in rows over [`ViewAxis`], linear between. An anisotropic stack has such rows at several azimuths
@@ -59,7 +61,7 @@ pub use fit::{FitSettings, Simulation};
 pub use fitted::Fitted;
 pub use judge::{FitError, Judge};
 pub use patina::{Cover, bare};
-pub use rows::{BaseLight, Critical, Lobe, OneWidth, Row, ViewAxis};
+pub use rows::{BaseLight, Critical, Lobe, OneWidth, Row, Shaping, Short, ViewAxis};
 pub use shape::{Shape, TAIL_MIN, Wide};
 pub(crate) use varied::scaled_along;
 pub use varied::{Fit, Traced, Varied, Varying};
@@ -136,8 +138,8 @@ pub struct Frame {
     pub base: Option<Painted>,
     /// Of an anisotropic place of a family: by what its lobes are stretched.
     pub stretch: Option<Stretch>,
-    /// Of rows that have one width of a lobe: what gives the other.
-    pub one_width: Option<OneWidth>,
+    /// Source of the widths of lobes.
+    pub shaping: Shaping,
 }
 
 /// A diffuse base below interfaces, which places may recolour.
@@ -168,10 +170,15 @@ impl FirstInterface {
     /// Energy that single facets send to `wo`, by channel, over [`NORMALS`] visible normals; within 4e-4. Reflectances are linear between cosines
     /// whose roots are evenly spaced.
     fn energy(&self, wo: DVec3) -> Rgb {
+        self.energy_by(wo, |cos_theta| self.reflectance.rgb(cos_theta))
+    }
+
+    /// [`Self::energy`] with another reflectance.
+    fn energy_by(&self, wo: DVec3, reflectance: impl Fn(f64) -> Rgb) -> Rgb {
         let intervals = self.intervals();
         let mut sum = [0.0; 3];
         for (i, weight) in self.weights(wo).into_iter().enumerate().filter(|(_, weight)| *weight != 0.0) {
-            let reflected = self.reflectance.rgb(cos_theta(i, intervals));
+            let reflected = reflectance(cos_theta(i, intervals));
             (0..3).for_each(|c| sum[c] += weight * reflected[c]);
         }
         sum
@@ -259,6 +266,13 @@ pub fn most_searched(stack: &Stack, varying: Option<Varying>) -> usize {
     if is_alone && most_lobes(stack) == LOBES { LOBES_MAX } else { most_lobes(stack) }
 }
 
+/// Whether a stack may have a [short lobe](Short): two layers or more, isotropic, without a diffuse base or a critical angle.
+pub fn may_be_short(stack: &Stack) -> bool {
+    let axis = ViewAxis::of(stack, FitSettings::DEFAULT_ROWS);
+    let is_plain = Axes::of(stack).is_none() && base_below(stack).is_none() && axis.critical().cot_sq == 0.0;
+    is_plain && most_lobes(stack) > 0
+}
+
 /// Excess error that a bake accepts for fewer lobes, see [`Simulation::fit_fewest`].
 pub const EXCESS: f64 = 0.03;
 
@@ -276,6 +290,13 @@ impl Lobes {
     /// Rows of a tile: one azimuth of an anisotropic stack, or all.
     pub fn tile(&self, tile: usize) -> &[Row] {
         &self.rows[tile * self.axis.size()..(tile + 1) * self.axis.size()]
+    }
+
+    /// Reflectance of the first interface at the cosine of a facet, by channel; `None` for a diffuse base alone.
+    pub(crate) fn reflected(&self, cos_theta_d: f64) -> Option<Rgb> {
+        let first = self.first.as_ref()?;
+        let short = self.frame.shaping.short();
+        Some(short.map_or_else(|| first.reflectance.rgb(cos_theta_d), |short| [short.reflected(cos_theta_d); 3]))
     }
 
     /// The row of a view (unit, above the surface), between fitted rows.

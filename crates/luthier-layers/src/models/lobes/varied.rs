@@ -510,6 +510,13 @@ impl Traced {
         }
     }
 
+    /// One short lobe, see [`Simulation::fit_short`]; `None` where something varies.
+    pub fn fit_short(&self) -> Option<Varied> {
+        let [only] = self.simulations.as_slice() else { return None };
+        let lobes = only.fit_short().filter(|_| self.varying.is_none())?;
+        Some(Varied { nodes: vec![lobes], varying: None })
+    }
+
     /// The fewest lobes, up to `most`, that are no farther from the light than the best by more than `excess`, see [`Simulation::fit_fewest`].
     pub fn fit(&self, most: usize, excess: f64) -> Varied {
         let Some(over) = &self.varying else {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use luthier_layers::models::lobes::{
-    Below, Critical, Family, FilmLight, Frame, Mix, Paint, Painted, Row, SlopeAxis, Slopes, ViewAxis, Wide,
+    Below, Critical, Family, FilmLight, Frame, Mix, Paint, Painted, Row, Shaping, SlopeAxis, Slopes, ViewAxis, Wide,
 };
 use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
@@ -157,6 +157,7 @@ pub(super) fn material(family: Family) -> MaterialEntry {
         lobes: 2,
         inverse_tails: [inverse_tail(family); 2],
         rise: None,
+        short: None,
         varying: Some(VaryingRecord {
             factor: VaryingFactor::Family,
             tiles: family.nodes() as u32,
@@ -383,7 +384,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             axes: None,
             base: Some(Painted { albedo: ALBEDO, is_lambertian: true }),
             stretch: None,
-            one_width: None,
+            shaping: Shaping::Rows,
         };
         let mut brightest = 0.0_f64;
         for (k, (wi, wo)) in directions(160).enumerate() {

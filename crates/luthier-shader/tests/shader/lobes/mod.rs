@@ -4,13 +4,14 @@ mod families;
 mod normals;
 mod one_width;
 mod patina;
+mod short;
 mod sides;
 mod three_lobes;
 
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use luthier_layers::models::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
+use luthier_layers::models::lobes::{Axes, Below, Critical, Frame, Painted, Row, Shaping, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
     AxesRecord, FunctionGroup, LobesRecord, MapSlot, MaterialConstants, MaterialEntry, PaintedRecord, VaryingFactor,
@@ -109,6 +110,7 @@ fn light_from_below_is_that_of_the_twin() {
             lobes: 2,
             inverse_tails: [1.0, 40.0],
             rise: None,
+            short: None,
             varying: None,
             axes: None,
             painted: None,
@@ -132,7 +134,7 @@ fn light_from_below_is_that_of_the_twin() {
             };
             let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>(), false);
             let expected = Below::new(
-                Frame { index: 1.4f32.into(), wide, axes: None, base: None, stretch: None, one_width: None },
+                Frame { index: 1.4f32.into(), wide, axes: None, base: None, stretch: None, shaping: Shaping::Rows },
                 row,
                 eye,
             )
@@ -181,7 +183,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
         record.integral = wide.integral();
         record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1, factors, family: None });
-        let frame = Frame { index: record.index, wide, axes: None, base: None, stretch: None, one_width: None };
+        let frame = Frame { index: record.index, wide, axes: None, base: None, stretch: None, shaping: Shaping::Rows };
         let materials = [material];
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let machine = lit_from_below(&text, &materials, &image);
@@ -300,7 +302,7 @@ fn lobes_in_axes_are_those_of_the_twin() {
         let record = materials[number].constants.lobes.unwrap();
         let axes = record.axes.map(|AxesRecord { turn, is_mirrored, .. }| Axes { turn, is_mirrored });
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame = Frame { index: record.index, wide, axes, base: None, stretch: None, one_width: None };
+        let frame = Frame { index: record.index, wide, axes, base: None, stretch: None, shaping: Shaping::Rows };
         let groups = if variance > 0.0 { &[FunctionGroup::Surface][..] } else { &[] };
         let set = MaterialSet {
             functions: groups.iter().copied().collect(),
@@ -359,7 +361,7 @@ fn values_of_a_place_change_lobes_as_in_the_twin() {
             axes: None,
             base: has_base.then_some(Painted { albedo: [0.3, 0.5, 0.7], is_lambertian }),
             stretch: None,
-            one_width: None,
+            shaping: Shaping::Rows,
         };
         let painted = frame.base.map(|Painted { albedo, is_lambertian }| PaintedRecord {
             albedo,
@@ -500,6 +502,7 @@ fn directions_are_drawn_as_their_density_says() {
             lobes: if layout.y.as_ref().unwrap().max == 7.0 { 3 } else { 2 },
             inverse_tails: [1.0, 40.0],
             rise: None,
+            short: None,
             varying,
             axes,
             painted: None,

@@ -38,7 +38,7 @@ fn luthier_facet_draw(prepared: LuthierPreparedLobes) -> LuthierFacetDraw {
     given.lowest = bound * given.eye.z;
     given.alpha_sq = given.alpha.x * given.alpha.y;
     let alpha = sqrt(given.alpha_sq);
-    let f0 = clamp(dot(luthier_fresnel_term(prepared.coat, 1.0), vec3<f32>(1.0 / 3.0)), 1e-3, 1.0);
+    let f0 = clamp(dot(luthier_first_reflectance(prepared, 1.0), vec3<f32>(1.0 / 3.0)), 1e-3, 1.0);
     let rest_sq = (1.0 - f0) * (1.0 - f0);
     //? beckmann
     given.f0 = f0;

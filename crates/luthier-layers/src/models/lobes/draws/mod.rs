@@ -127,7 +127,7 @@ impl<'a> Prepared<'a> {
     fn first_facet(&self, wi: DVec3) -> Rgb {
         let value = self.lobes.first.as_ref().and_then(|first| {
             let lobe = first.facets.lobe(Masking::Smith, wi, self.wo)?;
-            Some(first.reflectance.rgb(lobe.cos_theta_d).map(|reflectance| reflectance * lobe.value))
+            Some(self.lobes.reflected(lobe.cos_theta_d)?.map(|reflectance| reflectance * lobe.value))
         });
         value.unwrap_or([0.0; 3])
     }

@@ -134,7 +134,7 @@ fn luthier_shown_place(lobe: LuthierShownLobe, prepared: LuthierPreparedLobes, s
             let across_sq = max(sin_sq, 1e-12) * (alpha * alpha);
         }
         let masking = prepared.masking + luthier_slope_lambda(prepared.coat, across_sq, cos_theta_i);
-        let fresnel = luthier_fresnel_term(prepared.coat, clamp(cos_theta_d, 0.0, 1.0));
+        let fresnel = luthier_first_reflectance(prepared, clamp(cos_theta_d, 0.0, 1.0));
         place.weight = max(fresnel, vec3<f32>(1e-6)) * (max(cos_theta_d, 1e-3) / (wh.z * masking * prepared.wo.z));
     }
     return place;

@@ -13,7 +13,7 @@ use crate::models::lobes::fit::{Found, indices, seen_from};
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::Leaving;
 use crate::models::lobes::{
-    BaseLight, FirstInterface, FitSettings, Frame, Lobes, Painted, Row, ViewAxis, Wide, base_below, shown,
+    BaseLight, FirstInterface, FitSettings, Frame, Lobes, Painted, Row, Shaping, ViewAxis, Wide, base_below, shown,
 };
 
 impl Family {
@@ -69,7 +69,7 @@ impl Family {
                     // Rows have a shape of the remainder each, as above a diffuse base.
                     base: Some(Painted { albedo: own, is_lambertian: true }),
                     stretch: None,
-                    one_width: None,
+                    shaping: Shaping::Rows,
                 },
                 axis,
                 rows,

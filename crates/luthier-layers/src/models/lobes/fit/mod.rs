@@ -9,6 +9,8 @@ mod amounts;
 mod part;
 mod problem;
 
+use std::f64::consts::FRAC_PI_2;
+
 use luthier_optics::Rgb;
 use luthier_optics::color::Color;
 use luthier_optics::stack::{Base, Diffuse, Stack, Surface};
@@ -48,6 +50,9 @@ impl Default for FitSettings {
 
 /// A fit starts with tails of .09 and .79: the squared sines of these angles.
 const TAIL_STARTS: [f64; 2] = [0.3, 1.1];
+
+/// The angle of the tail of GGX, which is 1.
+const GGX: f64 = FRAC_PI_2;
 
 /// Indices of media closer than this are one.
 const INDEX_STEP: f64 = 0.05;
@@ -298,6 +303,20 @@ impl Simulation {
         let fits = self.fits(&problems, most);
         let founds = (0..=most).map(|most| fewest(&problems, &fits[..fits.len().min(most + 1)], 0.0));
         founds.map(|found| self.lobes(&self.polished(found))).collect()
+    }
+
+    /// One short lobe ([`Lobes::of_short`]): the nearest with the tail of GGX, for all light. `None` where the stack has none, as in [`Lobes::of_short`].
+    pub fn fit_short(&self) -> Option<Lobes> {
+        if self.axes.is_some() || self.base.is_some() || self.first.is_none() {
+            return None;
+        }
+        let alone = Self { has_remainder: false, has_tail: false, ..self.clone() };
+        let (problems, basis) = (alone.problems(), alone.basis());
+        let starts = (0..problems.len()).flat_map(|set| {
+            let shapes = alone.starts.iter();
+            shapes.map(move |&shape| (set, vec![Start::new(basis, shape, GGX)], REMAINDER_START))
+        });
+        alone.lobes(&nearest(&problems, starts.collect())).of_short()
     }
 
     /// The place of [`Self::fit_fewest`].

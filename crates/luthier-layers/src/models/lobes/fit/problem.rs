@@ -12,7 +12,7 @@ use crate::models::lobes::ellipse::{Numbers, Plane};
 use crate::models::lobes::half_vector::{outside, refracted};
 use crate::models::lobes::parameters::{Basis, NODES, SHIFT, Term};
 use crate::models::lobes::tally::{Cells, Point, Tally, mean};
-use crate::models::lobes::{Axes, BaseLight, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
+use crate::models::lobes::{Axes, BaseLight, Frame, Lobe, Lobes, Row, Shape, Shaping, TAIL_MIN, ViewAxis, Wide};
 
 /// Shapes with less than this share above the horizon are penalised: energies are divided by the share.
 const SHARE_WANTED: f64 = 0.35;
@@ -212,7 +212,8 @@ impl<'a> Problem<'a> {
         let energies = (0..amounts.len()).map(|view| {
             let parts = (0..=count).map(|part| {
                 let of_base = if part == count { tallies[view].of_lambertian() } else { [0.0; 3] };
-                [0, 1, 2].map(|c: usize| channels[c][view][part] + of_base[c])
+                // Without a remainder there is no such part.
+                [0, 1, 2].map(|c: usize| channels[c][view].get(part).copied().unwrap_or(0.0) + of_base[c])
             });
             parts.collect()
         });
@@ -251,7 +252,14 @@ impl<'a> Problem<'a> {
         };
         Lobes {
             first: first.clone(),
-            frame: Frame { index, wide, axes: *axes, base: self.simulation.base, stretch: None, one_width: None },
+            frame: Frame {
+                index,
+                wide,
+                axes: *axes,
+                base: self.simulation.base,
+                stretch: None,
+                shaping: Shaping::Rows,
+            },
             axis: *axis,
             rows,
         }

@@ -74,6 +74,15 @@ struct LuthierPreparedLobes {
         leaning: vec3<f32>,
         lean: vec2<f32>,
     }
+    //? lobes_short
+    {
+        /// Numbers of the reflectance of the first interface, see `luthier_short_reflectance`.
+        reflectance: vec4<f32>,
+        /// Numbers of the lobe as a quadratic form, see `luthier_light_lobes`.
+        form: vec4<f32>,
+        /// Of a first interface of GGX: its squared slope parameter, 1 less that, and 2 pi times that square times a root of the cosine of the eye and times the cosine.
+        coat_roots: vec4<f32>,
+    }
     /// Share of the surface that the first interface covers.
     cover: f32,
     /// The layer that is bare elsewhere, and 1 + Lambda of the eye there.
@@ -451,6 +460,20 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         prepared.azimuth = across * inverse_sin;
         let tile = first_tile;
     }
+    //? lobes_short
+    {
+        let medium = luthier_materials[header + $word_veil];
+        prepared.medium = vec4<f32>(medium.x, 0.0, 0.0, 1.0 / LUTHIER_PI);
+        prepared.reflectance = vec4<f32>(medium.yzw, 1.0 - medium.y - medium.z - medium.w);
+        //? !beckmann, !free_slopes
+        {
+            let alpha_sq = 1.0 / prepared.coat.falloff;
+            let left = 1.0 - alpha_sq;
+            let area = 2.0 * LUTHIER_PI * alpha_sq;
+            prepared.coat_roots = vec4<f32>(alpha_sq, left, area * sqrt(alpha_sq + wo.z * wo.z * left), area * wo.z);
+        }
+    }
+    //? else
     prepared.medium = luthier_materials[header + $word_veil];
     prepared.inside_cos = sqrt(luthier_inside_cos_sq(prepared.medium, wo.z));
     //? lobes_tilted
@@ -478,7 +501,11 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         let wide = luthier_lookup_tinted(prepared.row, tints, 0.0);
     }
     //? else
+    //? !lobes_short
     let wide = luthier_lookup_lobes(tile, cos_theta, 0.0);
+    //? lobes_short
+    prepared.wide = vec3<f32>(0.0);
+    //? else
     prepared.wide = wide.rgb;
     //? lobes_base
     {
@@ -568,10 +595,20 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         //? else
         //? lobes_one_width
         {
-            // One width is beside the remainder, and the share beside the albedo. The other width follows from the view.
-            //? !lobes_film
-            let sheet = luthier_materials[header + $word_glitter_tilt];
-            let first_numbers = vec3<f32>(wide.a, wide.a * (1.0 + sheet.z * sin_theta_sq), sheet.y);
+            //? lobes_short
+            {
+                // Both widths follow from the view.
+                let widths = luthier_materials[header + $word_phong_specular];
+                let along = widths.x + sin_theta_sq * (widths.y + sin_theta_sq * widths.z);
+                let first_numbers = vec3<f32>(along, along * (1.0 + widths.w * sin_theta_sq), 1.0);
+            }
+            //? else
+            {
+                // One width is beside the remainder, and the share beside the albedo. The other width follows from the view.
+                //? !lobes_film
+                let sheet = luthier_materials[header + $word_glitter_tilt];
+                let first_numbers = vec3<f32>(wide.a, wide.a * (1.0 + sheet.z * sin_theta_sq), sheet.y);
+            }
             //? lobes_tilted
             let shares = luthier_lookup_lobes(tile, cos_theta, 2.0).aa;
         }
@@ -601,6 +638,13 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         }
         //? else
         prepared.first_shape = luthier_with_peak(first_shape);
+        //? lobes_short, !lobes_tilted
+        {
+            let shape = prepared.first_shape;
+            let squares = shape.sharpness * shape.sharpness;
+            let crossed = -2.0 * shape.sharpness.x * shape.middle;
+            prepared.form = vec4<f32>(squares.y, 1.0 + shape.middle * shape.middle, squares.x - squares.y, crossed);
+        }
     }
     //? two_lobes
     {

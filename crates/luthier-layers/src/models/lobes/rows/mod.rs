@@ -1,6 +1,8 @@
 //! Rows over the view.
 
 mod one_width;
+mod shaping;
+mod short;
 
 use luthier_optics::Rgb;
 
@@ -9,6 +11,8 @@ use super::shape::{Shape, TAIL_MIN};
 use crate::least_squares::solve;
 
 pub use one_width::OneWidth;
+pub use shaping::Shaping;
+pub use short::Short;
 
 /// Cosine at which the row of the horizon is traced, at 89.9 degrees.
 const FLATTEST: f64 = 0.001_745;
@@ -391,6 +395,26 @@ impl Row {
         base.into_iter().flatten().chain(own).collect()
     }
 
+    /// The row as parts where it has [`Short`]: the energy of its one lobe with the shift, and the albedo with the share.
+    pub fn to_parts_of_short(&self) -> Vec<[f64; 4]> {
+        let Lobe { strength, share, shift, .. } = self.lobes.first().copied().unwrap_or(DARK);
+        vec![part(strength, shift), part(self.albedo_dir, share)]
+    }
+
+    /// The row of [`Self::to_parts_of_short`]; the widths are as in no row.
+    pub fn of_short_parts(parts: &[[f64; 4]]) -> Self {
+        let [light, albedo] = [0, 1].map(|part: usize| parts.get(part).copied().unwrap_or_default());
+        let lobe = Lobe {
+            strength: rgb(Some(&light)),
+            share: albedo[3],
+            shift: light[3],
+            sharpness: [1.0; 2],
+            shear: 0.0,
+            tail: 1.0,
+        };
+        Self { albedo_dir: rgb(Some(&albedo)), lobes: vec![lobe], wide: [0.0; 3], base: None }
+    }
+
     /// The row of parts with at most two lobes. With `has_base`, the first two parts belong to a diffuse base. Three parts are those of [`OneWidth`].
     pub fn of_parts(parts: &[[f64; 4]], has_base: bool) -> Self {
         Self::within(LOBES, parts, has_base)
@@ -711,11 +735,11 @@ mod tests {
             axes: None,
             base: None,
             stretch: None,
-            one_width: None,
+            shaping: Shaping::Rows,
         };
         let given = Lobes { first: None, frame, axis, rows: (0..7).map(row).collect() };
         let narrowed = given.clone().of_one_width().unwrap();
-        let one_width = narrowed.frame.one_width.unwrap();
+        let Shaping::OneWidth(one_width) = narrowed.frame.shaping else { panic!("{:?}", narrowed.frame.shaping) };
         assert!((one_width.rise + 0.5).abs() < 1e-9 && one_width.inverse_tail == 4.0, "{one_width:?}");
         for (place, (given, narrowed)) in given.rows.iter().zip(&narrowed.rows).enumerate() {
             let cos = axis.cos_theta(place as f64);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Lobe, Row};
+use super::{Lobe, Row, Shaping};
 use crate::models::lobes::Lobes;
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::{LEAVING_MIN, Leaving};
@@ -47,7 +47,7 @@ impl OneWidth {
     }
 
     /// The lobe that a stored one is at this view.
-    pub(in crate::models::lobes) fn shaped(self, stored: Lobe, sin_theta: f64) -> Lobe {
+    pub(super) fn shaped(self, stored: Lobe, sin_theta: f64) -> Lobe {
         let along = stored.sharpness[0] * self.inverse_tail.sqrt();
         Lobe { sharpness: [along, along * self.factor(sin_theta)], tail: 1.0 / self.inverse_tail, ..stored }
     }
@@ -75,7 +75,7 @@ impl Lobes {
                 *lobe = Lobe { share, strength: lobe.strength.map(|strength| strength * lobe.share / share), ..stored };
             }
         }
-        self.frame.one_width = Some(one_width);
+        self.frame.shaping = Shaping::OneWidth(one_width);
         Some(self)
     }
 }

@@ -3,6 +3,7 @@
 mod anisotropic;
 mod draws;
 mod place;
+mod short;
 mod tilt;
 mod weights;
 

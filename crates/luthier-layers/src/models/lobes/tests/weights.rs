@@ -93,6 +93,22 @@ fn weights_of_materials_are_bounded() {
     judge(&found, LIMIT, BEYOND);
 }
 
+#[test]
+fn weights_of_short_lobes_are_bounded() {
+    let mut found = Vec::new();
+    for (coat_alpha, base) in [(0.01, 0.2), (0.1, 0.05), (0.1, 0.3), (0.3, 0.2), (0.6, 0.5)] {
+        for tint in [0.0, 2.0] {
+            let lacquered = stack(vec![layer(coat_alpha, coat([tint, 0.5 * tint, 0.0])), layer(base, metal())]);
+            let simulation = Simulation::new(&lacquered, &Color::ThreeWavelengths(NM), SETTINGS);
+            if let Some(lobes) = simulation.fit_short() {
+                found.extend(of_views(&format!("{coat_alpha} over a metal of {base}, tint {tint}"), &lobes));
+            }
+        }
+    }
+    assert!(found.len() >= 8 * VIEWS.len(), "{}", found.len());
+    judge(&found, LIMIT, BEYOND);
+}
+
 /// A family with and without metal, below coats and without.
 #[test]
 fn weights_at_places_of_a_family_are_bounded() {
