@@ -112,9 +112,15 @@ fn curve([f, p, q]: [f64; 3], cos_theta_d: f64) -> f64 {
     f + cube * (p + cube * (q + cube * (1.0 - f - p - q)))
 }
 
+/// Whether a curve is a reflectance: that of a film may leave 0..=1.
+fn is_reflectance(numbers: [f64; 3]) -> bool {
+    let cosines = (0..=COSINES).map(|i| f64::from(i) / f64::from(COSINES));
+    cosines.map(|cos_theta| curve(numbers, cos_theta)).all(|reflected| (-1e-12..=1.0 + 1e-12).contains(&reflected))
+}
+
 impl Lobes {
     /// Lobes with one short lobe each, which keeps the energy of all light from below, and makes up for what the first interface reflects too much or too little.
-    /// `None` where rows have another number of lobes, axes, a critical angle or a diffuse base, or where the curves are not near enough.
+    /// `None` where rows have another number of lobes, axes, a critical angle or a diffuse base, or where curves are not near enough, or no reflectance.
     #[must_use]
     pub fn of_short(mut self) -> Option<Self> {
         let first = self
@@ -125,7 +131,8 @@ impl Lobes {
         let views: Vec<DVec3> = places.map(|cos| DVec3::new(((1.0 - cos) * (1.0 + cos)).sqrt(), 0.0, cos)).collect();
         let sines: Vec<f64> = views.iter().map(|view| view.x).collect();
         let mean = |cos_theta: f64| first.reflectance.rgb(cos_theta).iter().sum::<f64>() / 3.0;
-        let short = Short::of(&self.rows, &sines, Short::nearest(mean))?;
+        let reflectance = Some(Short::nearest(mean)).filter(|numbers| is_reflectance(*numbers))?;
+        let short = Short::of(&self.rows, &sines, reflectance)?;
         for (row, view) in self.rows.iter_mut().zip(&views) {
             let energies = row.energies();
             let excess = first.excess(*view, short);
@@ -149,5 +156,20 @@ impl FirstInterface {
     fn excess(&self, wo: DVec3, short: Short) -> [f64; 3] {
         let (own, other) = (self.energy(wo), self.energy_by(wo, |cos_theta| [short.reflected(cos_theta); 3]));
         [0, 1, 2].map(|c: usize| other[c] - own[c])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use luthier_optics::dielectric_albedo::fresnel_dielectric;
+
+    use super::*;
+
+    /// That of an index next to 1 begins late, and a polynomial has waves below 0 before.
+    #[test]
+    fn curves_below_0_are_no_reflectances() {
+        let of = |index| is_reflectance(Short::nearest(|cos_theta| fresnel_dielectric(index, cos_theta)));
+        assert!(of(1.1) && of(1.5) && of(2.5));
+        assert!(!of(1.01));
     }
 }
