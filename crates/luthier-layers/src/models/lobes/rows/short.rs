@@ -165,7 +165,7 @@ mod tests {
 
     use super::*;
 
-    /// That of an index next to 1 begins late, and a polynomial has waves below 0 before.
+    /// The reflectance of an index next to 1 begins late, and a polynomial has waves below 0 before.
     #[test]
     fn curves_below_0_are_no_reflectances() {
         let of = |index| is_reflectance(Short::nearest(|cos_theta| fresnel_dielectric(index, cos_theta)));
