@@ -216,8 +216,9 @@ pub fn forms(material: &Material) -> Vec<Option<LobesForm>> {
 fn fits_of(stack: &Stack, color: &Color) -> Vec<Lobes> {
     let traced = Traced::new(stack, color, None, FitSettings::of(None));
     let most = most_searched(stack, None);
+    let by_most = traced.fit_each(most);
     let fits = LobesForm::ALL.map(|form| {
-        let fit = traced.fit(form.most().min(most), 0.0);
+        let fit = by_most[form.most().min(most)].clone();
         match form {
             LobesForm::ShortLobe => traced.fit_short().unwrap_or(fit),
             LobesForm::OneWidth => fit.clone().of_one_width().unwrap_or(fit),

@@ -31,24 +31,31 @@ use crate::scenes::{sets, tables};
 /// Rows that change with the view in every part.
 fn rows() -> (AtlasLayout, Image) {
     let layout = tables().into_iter().find(|t| t.kind == TableKind::Lobes).unwrap().layout;
-    let [width, height] = layout.size();
-    let mut image = Image::zeros(width, height, 4);
-    let across = layout.row_size();
-    for i in 0..across {
-        let c = layout.x.node((i.max(1) - 1).min(layout.x.size - 1));
-        let parts = [
+    let image = of_parts(&layout, |c| {
+        [
             [0.3 * c, 0.2, 0.1, 0.0],
             [0.5, 0.4 + 0.1 * c, 0.3, 0.3 - 0.2 * c],
             [0.1, 0.2, 0.2 + 0.3 * c, -0.1],
             [8.0 + c, 12.0 - c, 0.5 + c, 0.7],
             [1.0, 0.9, 40.0, 0.8],
             [0.9, 0.8, 0.7, 0.0],
-        ];
+        ]
+    });
+    (layout, image)
+}
+
+/// One tile of rows whose parts are functions of the cosine, the first and the last node repeated.
+fn of_parts<const N: usize>(layout: &AtlasLayout, parts_of: impl Fn(f64) -> [[f64; 4]; N]) -> Image {
+    let [width, height] = layout.size();
+    let mut image = Image::zeros(width, height, 4);
+    let across = layout.row_size();
+    for i in 0..across {
+        let parts = parts_of(layout.x.node((i.max(1) - 1).min(layout.x.size - 1)));
         for (j, part) in (0..).zip(parts) {
             image.texel_mut(j * across + i, 0).copy_from_slice(&part.map(|value| value as f32));
         }
     }
-    (layout, image)
+    image
 }
 
 /// [`rows`] with the light of a base before them.

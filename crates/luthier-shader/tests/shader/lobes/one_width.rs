@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 use luthier_layers::models::lobes::{Below, Critical, Frame, Lobe, Row, Shaping, ViewAxis, Wide};
-use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
+use luthier_lut::{AtlasLayout, Axis, TableKind, WeightBits, bilinear};
 use luthier_manifest::{FunctionGroup, LobesRecord};
 use luthier_shader::{Form, MaterialSet, Target, emit};
 
-use super::{assert_light, lit_from_below, set};
+use super::{assert_light, lit_from_below, of_parts, set};
 use crate::arithmetic::directions;
 use crate::machine::{Value, vector};
 use crate::scenes::tables;
@@ -22,15 +22,9 @@ fn one_width_gives_the_other() {
     let y = face.layout.y.clone().map(|y| Axis { max: 2.0, size: 3, ..y });
     let layout = AtlasLayout { y, ..face.layout.clone() };
     face.layout = layout.clone();
-    let [width, height] = layout.size();
-    let mut image = Image::zeros(width, height, 4);
-    for i in 0..layout.row_size() {
-        let c = layout.x.node((i.max(1) - 1).min(layout.x.size - 1));
-        let parts = [[0.3 * c, 0.2, 0.1, 8.0 + c], [0.5, 0.4 + 0.1 * c, 0.3, 0.3 - 0.2 * c], [0.9, 0.8, 0.7, 0.6]];
-        for (j, part) in (0..).zip(parts) {
-            image.texel_mut(j * layout.row_size() + i, 0).copy_from_slice(&part.map(|value| value as f32));
-        }
-    }
+    let image = of_parts(&layout, |c| {
+        [[0.3 * c, 0.2, 0.1, 8.0 + c], [0.5, 0.4 + 0.1 * c, 0.3, 0.3 - 0.2 * c], [0.9, 0.8, 0.7, 0.6]]
+    });
     let mut materials = set("lobes");
     let axis = ViewAxis::new(2, Critical::default());
     let wide = Wide::new([0.6, 0.3], axis);
