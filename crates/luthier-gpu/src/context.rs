@@ -173,10 +173,12 @@ impl Context {
             Err(error) => return Err(refused(what, error)),
         }
         self.check(what)?;
-        match receiver.try_recv() {
+        // A thread that polls at that time may be the one that has the answer, and has yet to send it.
+        match receiver.recv_timeout(TIMEOUT) {
             Ok(Ok(())) => {}
             Ok(Err(error)) => return Err(refused(what, error)),
-            Err(_) => return Err(refused(what, "the result was never mapped")),
+            Err(mpsc::RecvTimeoutError::Timeout) => return Err(GpuError::Timeout { seconds: TIMEOUT.as_secs() }),
+            Err(mpsc::RecvTimeoutError::Disconnected) => return Err(refused(what, "the result was never mapped")),
         }
         let view = readback.get_mapped_range(..).map_err(|error| refused(what, error))?;
         let words = bytemuck::pod_collect_to_vec::<u8, T>(&view);

@@ -42,6 +42,26 @@ fn another_shader_cannot_be_rebound() {
     assert!(scene.rebound(&coated).unwrap().is_none());
 }
 
+/// A thread may map what another one waits for: each gets its own answer, and none ends without one.
+#[test]
+fn threads_share_a_device() {
+    let Some(gpu) = gpu() else { return };
+    let scenes = [0.2, 0.5, 0.8].map(|albedo| {
+        gpu.scene(&artefacts(Form::Baked, vec![vec![diffuse([albedo; 3], 0.0)]], &[]), Form::Baked).unwrap()
+    });
+    let up = ([0.0, 0.0, 1.0], [0.0, 0.6, 0.8]);
+    std::thread::scope(|scope| {
+        for scene in scenes.iter().cycle().take(6) {
+            scope.spawn(|| {
+                let alone = scene.evaluate(0, &[up]).unwrap();
+                (0..100).for_each(|_| assert_eq!(scene.evaluate(0, &[up]).unwrap(), alone));
+            });
+        }
+    });
+    let values = scenes.each_ref().map(|scene| scene.evaluate(0, &[up]).unwrap()[0][0]);
+    assert!(values[0] < values[1] && values[1] < values[2], "{values:?}");
+}
+
 #[test]
 fn a_rendering_may_be_given_up_between_passes() {
     let Some(gpu) = gpu() else { return };
