@@ -86,7 +86,8 @@ pub(crate) fn run(options: &EnvironmentOptions) -> Outcome {
     drop(bar);
     let costs = materials.iter().map(Costs::of).collect::<Outcome<_>>()?;
     let bytes = cost::bytes(skies[0].level_size());
-    let page = Page { rows, costs, places: points.len(), bytes, options };
+    let theta_max_deg = points.iter().map(Point::theta_deg).fold(0.0, f64::max);
+    let page = Page { rows, costs, places: points.len(), theta_max_deg, bytes, options };
     deliver(&page.text(), options.destination.output.as_deref())
 }
 

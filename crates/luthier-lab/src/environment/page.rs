@@ -14,6 +14,8 @@ pub(super) struct Page<'a> {
     pub(super) rows: Vec<Row>,
     pub(super) costs: Vec<Costs>,
     pub(super) places: usize,
+    /// Largest angle between normal and eye at a place.
+    pub(super) theta_max_deg: f64,
     /// Bytes of both cubes.
     pub(super) bytes: u32,
     pub(super) options: &'a EnvironmentOptions,
@@ -29,7 +31,11 @@ impl Page<'_> {
             self.options.random
         );
         page.push_str(INTRODUCTION);
-        let _ = writeln!(page, "Places: {}. Both cubes take {} bytes, whatever the reads.\n", self.places, self.bytes);
+        let _ = writeln!(
+            page,
+            "Places: {}, up to {:.0} degrees from the eye. Both cubes take {} bytes, whatever the reads.\n",
+            self.places, self.theta_max_deg, self.bytes
+        );
         self.front(&mut page);
         self.reads(&mut page);
         self.papers(&mut page);
@@ -143,10 +149,9 @@ const READS: &str = "
 
 For each number of reads: with 16 samples of a pixel, then with one.
 
-Parts of the difference of eight reads were looked at one by one in f64 on the host, with 256 places up to 80 degrees. The remainder has under .005 of it in all nine pairs. Of frosted-acrylic under
-night-street .056 of .064 are in the first interface beyond 70 degrees, of which a coarse grid has no places (that of `--size 8` ends at 62 degrees): its lobe is up to six times as long as wide there, eight directions leave gaps on it, and narrower blurs show dots.
-Sums over the map in four times as many rows differ by .009 there, so that texels are not the reason. Of silver-paint the first lobe from below has most: it is half a radian wide, and the horizon cuts it. One sample is off
-there by .1, because an exponential stands for that cut. Those 256 places hold seven of the nine pairs with 16 turns.
+Blurs of directions that turn are cut where the horizon cuts them: what is read has the mean direction that is left. One sample is off by .1 where a lobe from below is half a radian wide and the
+horizon cuts it, as in silver-paint: an exponential stands for that cut. At grazing angles, which a finer grid has, the lobe of a first interface is up to six times as long as wide. Eight
+directions leave gaps on it, and narrower blurs show dots: that is most of what frosted-acrylic is off by under night-street.
 ";
 
 const MODELS: &str = "

@@ -20,6 +20,13 @@ pub(super) struct Point {
     wo: DVec3,
 }
 
+impl Point {
+    /// Angle between normal and eye.
+    pub(super) fn theta_deg(&self) -> f64 {
+        self.normal.dot(self.wo).clamp(-1.0, 1.0).acos().to_degrees()
+    }
+}
+
 /// Places under the middles of the pixels of a square picture of `size` pixels a side.
 pub(super) fn points(size: u32) -> Vec<Point> {
     let camera = Shape::Sphere.camera();

@@ -39,7 +39,7 @@ const STEPS: [Step; 4] = [
         reads: 8,
         reach: 2.1,
         turned: Some(Turned {
-            blur: 0.256,
+            blur: 0.294,
             narrowest: 0.566,
             points: &[
                 [0.392, -0.061, 183.5],

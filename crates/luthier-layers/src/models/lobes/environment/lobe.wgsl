@@ -42,6 +42,26 @@ struct LuthierShown {
     weight: vec3<f32>,
 }
 
+/// A direction of a blur, the standard deviation of the blur, an angle, and the share of its light that is above the horizon.
+struct LuthierShownBlur {
+    wi: vec3<f32>,
+    width: f32,
+    share: f32,
+}
+
+/// What the horizon leaves of a blur about a place: the mean of a Gaussian that is cut there, and its standard deviation across the horizon, which is
+/// read in all directions. An exponential stands for the hazard of the normal distribution: from half a standard deviation below the horizon on it is
+/// within .012, and within .1 from one below.
+fn luthier_shown_above(place: LuthierShownPlace, width: f32) -> LuthierShownBlur {
+    let above = max(place.above / max(width, 0.014), -1.0);
+    let hazard = 0.8 * exp(-above * (0.8 + 0.22 * above));
+    let raised = above + hazard;
+    let z = min(max(width * raised, place.wi.z), 1.0);
+    let across = place.wi.xy * sqrt(max(1.0 - z * z, 0.0) / max(dot(place.wi.xy, place.wi.xy), 1e-12));
+    let share = saturate(0.5 + 0.4 * place.above / max(width, 0.014));
+    return LuthierShownBlur(vec3<f32>(across, z), width * sqrt(1.0 - hazard * raised), share);
+}
+
 /// Angles between directions outside over differences of slopes, in the plane of the eye and across it.
 fn luthier_shown_stretch(up_z: f32, cos_theta_i: f32, cos_theta_d: f32, cos_theta_h: f32) -> vec2<f32> {
     return 2.0 * cos_theta_h * vec2<f32>(cos_theta_h * max(up_z, 0.0) / max(cos_theta_i, 0.02), max(cos_theta_d, 1e-3));

@@ -51,9 +51,9 @@ fn luthier_turned_tap(shown: LuthierShown, lobe: LuthierShownLobe, spread: vec3<
     let farther = sqrt(select((exp(grown) - 1.0) / max(grown, 1e-2), 1.0 + 0.5 * grown, grown < 0.02));
     let around = farther * vec2<f32>(turn.x * tap.x - turn.y * tap.y, turn.y * tap.x + turn.x * tap.y);
     let place = luthier_shown_place(lobe, prepared, lobe.middle + spread.xy * around + vec2<f32>(0.0, spread.z * around.x));
-    let width = min(luthier_shown_blur(lobe, place.stretch) * exp(0.4 * grown), 1.4);
-    let weight = (tap.w * saturate(0.5 + 0.8 * place.above / max(width, 0.014))) * place.weight;
-    let light = luthier_environment_around(frame * place.wi, width);
+    let blur = luthier_shown_above(place, min(luthier_shown_blur(lobe, place.stretch) * exp(0.4 * grown), 1.4));
+    let weight = (tap.w * blur.share) * place.weight;
+    let light = luthier_environment_around(frame * blur.wi, blur.width);
     return LuthierShown(shown.light + weight * light, shown.weight + weight);
 }
 
