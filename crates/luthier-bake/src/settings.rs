@@ -82,12 +82,14 @@ pub(crate) struct Settings {
     pub(crate) formats: FormatSet,
     /// Most lobes, if a search decides them; without a search each material has as many as it needs.
     pub(crate) lobes: Option<usize>,
+    /// Whether a search decided that first interfaces above lobes reflect by polynomials.
+    pub(crate) is_curved: bool,
 }
 
 impl Settings {
     /// Settings with these shapes, until a search finds others.
     pub(crate) fn new(fixed: [Shape; TableKind::ALL.len()], asked: [Asked; TableKind::ALL.len()]) -> Self {
-        Self { shapes: fixed.clone().map(Some), fixed, asked, formats: FormatSet::CORE, lobes: None }
+        Self { shapes: fixed.clone().map(Some), fixed, asked, formats: FormatSet::CORE, lobes: None, is_curved: false }
     }
 
     /// The shape of the tables of a kind; none for kinds that shaders compute.

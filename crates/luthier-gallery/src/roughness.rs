@@ -94,6 +94,7 @@ mod tests {
                 inverse_tails: [1.0; 2],
                 rise: None,
                 short: None,
+                reflectance: None,
                 varying,
                 axes: None,
                 painted: None,

@@ -123,6 +123,7 @@ mod tests {
             inverse_tails: [2.0, 0.0],
             rise: None,
             short: None,
+            reflectance: None,
             varying: None,
             axes: None,
             painted: None,

@@ -39,6 +39,8 @@ pub(crate) struct Site<'a> {
     pub(crate) fixed: &'a Shape,
     /// Most lobes, if a search decides them.
     pub(crate) lobes: Option<usize>,
+    /// Whether a search decided that first interfaces above lobes reflect by polynomials.
+    pub(crate) is_curved: bool,
     pub(crate) read_image: ImageReader<'a>,
 }
 

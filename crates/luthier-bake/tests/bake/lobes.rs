@@ -131,6 +131,28 @@ fn a_limit_takes_a_short_lobe() {
     assert!([with, alone].iter().flatten().all(|form| *form != LobesForm::ShortLobe));
 }
 
+/// Under a limit a clear coat reflects by a polynomial, if all materials of the bake may; without one it has Fresnel's equations.
+#[test]
+fn a_limit_takes_a_polynomial_for_the_first_interface() {
+    let clear = coated("clear", 0.3, &conductor("{ n = 0.2, k = 3.0 }", 0.3));
+    let metal = {
+        let mut metal = material("metal", &conductor("\"cu\"", 0.3), "");
+        metal.bake.model = Some(ShadingModel::Lobes);
+        metal
+    };
+    let reflectances = |materials: &[Material], max_lobe_err: Option<f64>| {
+        let budget = Budget { max_lobe_err, ..Budget::default() };
+        let baked =
+            bake_with(materials, &Options { budget, ..Options::default() }, &no_images, &Silent, &*STORE).unwrap();
+        baked.materials.iter().map(|material| material.constants.lobes.unwrap().reflectance).collect::<Vec<_>>()
+    };
+    let [alone] = reflectances(std::slice::from_ref(&clear), Some(0.03))[..] else { panic!("one material") };
+    let [f, ..] = alone.unwrap();
+    assert!((f - 0.04).abs() < 1e-9, "{f}");
+    assert_eq!(reflectances(std::slice::from_ref(&clear), None), [None]);
+    assert_eq!(reflectances(&[clear, metal], Some(0.05)), [None; 2]);
+}
+
 /// Two lobes in the half vectors of a steep coat seem near at flat views in cells of these half vectors, and are .07 off there. A judge sees that lobes in other half
 /// vectors are nearer.
 #[test]

@@ -96,6 +96,7 @@ fn scene(first: f32, fresnel: f32, axes: Option<Axes>, format: TexelFormat) -> O
         inverse_tails: [1.0 / NARROW.2, 1.0 / BROAD.2],
         rise: None,
         short: None,
+        reflectance: None,
         varying: None,
         axes: axes.map(|Axes { turn, is_mirrored }| AxesRecord { turn, is_mirrored, tiles }),
         painted: None,

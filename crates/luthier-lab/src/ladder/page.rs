@@ -18,7 +18,7 @@ const WORST: usize = 12;
 const AIMS: [f64; 2] = [0.035, 0.06];
 
 const INTRODUCTION: &str = "\nWhere a file or the command line limits the errors of `lobes` (`max_lobe_err`, `max_albedo_err`), a bake takes the form with the lowest cost that holds: no lobe, \
-    one short lobe, one lobe of one width, one lobe, two, or three. Without limits it takes the fewest lobes that fit as well as two. This page takes each material by itself, with a limit on the albedo of .4 times that on the lobe error. \
+    one short lobe, one lobe of one width, one lobe, two, or three, each with a [polynomial reflectance](../manifest.md#reflectance) of the first interface where one is near. Without limits it takes the fewest lobes that fit as well as two. This page takes each material by itself, with a limit on the albedo of .4 times that on the lobe error. \
     Where no form holds a limit, a bake refuses; the page takes the form with the least error there: the one that holds the tightest limit, which *least error* has for every material. \
     Errors of the first tables are those that the bake states: the largest of five views that no fit saw, and of the albedo at rows that were left out, with the noise of the judge in them (.006 to .009). Costs are picoseconds of a light on one view, medians over the \
     materials; in brackets is the median over the cost of `gltf-clearcoat` for as many lights. \

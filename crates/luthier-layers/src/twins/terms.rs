@@ -152,11 +152,10 @@ impl Exact {
 }
 
 impl Terms for Exact {
-    /// A short lobe has a reflectance of the first interface of its own.
+    /// Lobes may have a reflectance of the first interface of their own.
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
-        let short = self.lobes.get().and_then(|lobes| lobes.frame.shaping.short()).filter(|_| layer == 0);
-        if let Some(short) = short {
-            return [short.reflected(cos_theta_d); 3];
+        if let Some(curve) = self.lobes.get().and_then(|lobes| lobes.frame.curve).filter(|_| layer == 0) {
+            return [curve.at(cos_theta_d); 3];
         }
         self.interfaces.get(layer).and_then(Option::as_ref).map_or([0.0; 3], |i| i.rgb(cos_theta_d))
     }

@@ -86,9 +86,12 @@ pub struct LobesRecord {
     /// Where rows have one lobe of one width: its sharpness across the plane of the eye over that along it is `1 + rise sin^2` of the view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rise: Option<f64>,
-    /// Where rows have one short lobe: its other numbers, beside [`Self::rise`].
+    /// Where rows have one short lobe: its other numbers, beside [`Self::rise`] and [`Self::reflectance`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub short: Option<ShortRecord>,
+    /// Where the first interface reflects by a polynomial: its f, p and q in `f + u (p + u (q + (1 - f - p - q) u))`, u being the cube of 1 less the cosine of a facet.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reflectance: Option<[f64; 3]>,
     /// Tiles over a factor of a texture, if there are such tiles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub varying: Option<VaryingRecord>,
@@ -108,8 +111,6 @@ pub struct LobesRecord {
 pub struct ShortRecord {
     /// The a, b and c of its sharpness along the plane of the eye, `a + b s + c s^2`, s being the squared sine of the view.
     pub sharpness: [f64; 3],
-    /// The f, p and q of the reflectance of the first interface, `f + u (p + u (q + (1 - f - p - q) u))`, u being the cube of 1 less the cosine of a facet.
-    pub reflectance: [f64; 3],
 }
 
 /// Diffuse base below lobes. Rows hold its light for `albedo`. For an albedo R the light is `q(R) / q(albedo)` times as much, with
@@ -430,8 +431,8 @@ impl MaterialConstants {
     /// | header word | x, y, z, w |
     /// |---|---|
     /// | 1 | Phong's diffuse coefficient RGB, exponent; of lobes tiles beyond the first over `alpha_factor`, those over `slab_factor` or `film_factor`, least factor on slopes, of a family the roots of the least and the most slope parameter of the base and its steps in a unit of the root, share of the cosine of the view in the axis of the rows; of beams the ratio of the slope parameters, the weights of the specular and the diffuse part, number of the lobes' height |
-    /// | 2 | Phong's specular coefficient RGB; of lobes k, 4 w^2, and factor and offset of the root that is the cosine inside; of a short lobe its a, b, c and rise; of beams the normal of the inner boundary, 1; of `microfacet` with an added diffuse term 1 in w |
-    /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S; of a short lobe its f, p and q after the first; of a family the first and the last of `sent_back` in place of a and of that integral |
+    /// | 2 | Phong's specular coefficient RGB; of lobes k, 4 w^2, and factor and offset of the root that is the cosine inside; of a short lobe its a, b, c and rise, else of a polynomial reflectance its f, p, q and 1 less these; of beams the normal of the inner boundary, 1; of `microfacet` with an added diffuse term 1 in w |
+    /// | 3 | internal reflectance RGB, upward loss; of lobes the squared index less 1, a, b, and 1 over pi and the integral of S; of a short lobe the f, p and q of the reflectance after the first; of a family the first and the last of `sent_back` in place of a and of that integral |
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start; in w of a brightened base the share of the light of a diffuse base that comes back, else 0 |
     /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of a coat with a weight the weight, 0, -1, 2, and of a film with one in other models 3; of lobes over a diffuse base without either the albedo of that base RGB, -2 where rows have a and b, else -1, and of a family -3 |
@@ -453,10 +454,14 @@ impl MaterialConstants {
             words[1] = lobes.inside().map(|x| x as f32);
             words[2] = vec4([(index - 1.0) * (index + 1.0), a, b], FRAC_1_PI / integral);
             words[6][3] = lobes.lobes as f32;
-            if let Some(ShortRecord { sharpness, reflectance: [f, p, q] }) = lobes.short {
-                // Such materials have neither a critical angle nor a remainder.
-                words[1] = vec4(sharpness, lobes.rise.unwrap_or_default());
-                words[2] = [(index - 1.0) * (index + 1.0), f, p, q].map(|x| x as f32);
+            if let Some([f, p, q]) = lobes.reflectance {
+                // Such materials have no critical angle.
+                words[1] = [f, p, q, 1.0 - f - p - q].map(|x| x as f32);
+                if let Some(ShortRecord { sharpness }) = lobes.short {
+                    // And these no remainder.
+                    words[1] = vec4(sharpness, lobes.rise.unwrap_or_default());
+                    words[2] = [(index - 1.0) * (index + 1.0), f, p, q].map(|x| x as f32);
+                }
             }
         }
         if let Some(beams) = &self.beams {
@@ -586,6 +591,7 @@ mod tests {
             inverse_tails: [2.0, 3.0],
             rise: None,
             short: None,
+            reflectance: None,
             varying: None,
             axes: None,
             painted: None,
@@ -604,8 +610,10 @@ mod tests {
         let without = LobesRecord { critical_cot_sq: 0.0, critical_width: 0.0, ..lobes };
         assert_eq!(words(without)[1], [0.0, 0.0, f32::sqrt(0.5), 0.0]);
         assert_eq!(words(lobes)[9], [0.0, 2.0, 3.0, 0.0]);
-        let short = Some(ShortRecord { sharpness: [4.0, 5.0, 6.0], reflectance: [0.25, 0.5, 0.125] });
-        let of_short = words(LobesRecord { short, rise: Some(-0.5), ..lobes });
+        let of_curve = LobesRecord { reflectance: Some([0.25, 0.5, 0.125]), ..lobes };
+        assert_eq!(words(of_curve)[1..3], [[0.25, 0.5, 0.125, 0.125], [0.5625, 0.5, 0.75, 1.0]]);
+        let short = Some(ShortRecord { sharpness: [4.0, 5.0, 6.0] });
+        let of_short = words(LobesRecord { short, rise: Some(-0.5), ..of_curve });
         assert_eq!(of_short[1..3], [[4.0, 5.0, 6.0, -0.5], [0.5625, 0.25, 0.5, 0.125]]);
         let over = |factor| {
             let varying = Some(VaryingRecord { factor, tiles: 9, least_spread: 0.5, factors: None, family: None });

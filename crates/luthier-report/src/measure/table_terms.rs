@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 use luthier_layers::models::lobes::{
-    Axes, Below, Critical, Family, FilmLight, Frame, LOBES, OneWidth, Paint, Painted, Row, Shaping, Short, Slopes,
-    ViewAxis, Wide,
+    Axes, Below, Critical, Curve, Family, FilmLight, Frame, LOBES, OneWidth, Paint, Painted, Row, Shaping, Short,
+    Slopes, ViewAxis, Wide,
 };
 use luthier_layers::models::shade::ShaderTerms;
 use luthier_layers::models::statistics::diffuse_base::Veil;
@@ -197,14 +197,12 @@ impl Lobes {
             .painted
             .map(|PaintedRecord { albedo, moments }| Painted { albedo, is_lambertian: moments.is_some() });
         let shaping = match (record.rise, record.short) {
-            (Some(rise), Some(ShortRecord { sharpness, reflectance })) => {
-                Shaping::Short(Short { sharpness, rise, reflectance })
-            }
+            (Some(rise), Some(ShortRecord { sharpness })) => Shaping::Short(Short { sharpness, rise }),
             (Some(rise), None) => Shaping::OneWidth(OneWidth { rise, inverse_tail: record.inverse_tails[0].max(1.0) }),
             (None, _) => Shaping::Rows,
         };
-        let frame =
-            Frame { index: record.index, wide: Wide::new(record.falloff, axis), axes, base, stretch: None, shaping };
+        let (wide, curve) = (Wide::new(record.falloff, axis), record.reflectance.map(Curve));
+        let frame = Frame { index: record.index, wide, axes, base, stretch: None, shaping, curve };
         let tail = 1.0 / record.inverse_tails[0].max(1.0);
         let most = most_lobes(record);
         Self { tile, axis, frame, most, varying: record.varying, tail, family: None }
@@ -538,11 +536,10 @@ fn read_by(entry: &MaterialEntry) -> impl Iterator<Item = (usize, TableKind)> {
 }
 
 impl Terms for TableTerms<'_> {
-    /// A short lobe has a reflectance of the first interface of its own.
+    /// Lobes may have a reflectance of the first interface of their own.
     fn fresnel(&self, layer: usize, cos_theta_d: f64) -> Rgb {
-        let short = self.lobes.as_ref().and_then(|lobes| lobes.frame.shaping.short()).filter(|_| layer == 0);
-        if let Some(short) = short {
-            return [short.reflected(cos_theta_d); 3];
+        if let Some(curve) = self.lobes.as_ref().and_then(|lobes| lobes.frame.curve).filter(|_| layer == 0) {
+            return [curve.at(cos_theta_d); 3];
         }
         if let Some(reflected) = computed(&self.records[layer], cos_theta_d) {
             return self.passed(layer, cos_theta_d, reflected);

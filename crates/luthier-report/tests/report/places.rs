@@ -164,6 +164,7 @@ fn lacquered() -> (Bake, Vec<SurfaceMap>) {
         inverse_tails: [1.0; 2],
         rise: None,
         short: None,
+        reflectance: None,
         varying: Some(VaryingRecord {
             factor: VaryingFactor::SlabFactor,
             tiles: varied.nodes.len() as u32,

@@ -169,6 +169,8 @@ luthier_lut::named! {
         Level = "level",
         /// No material of the set has more than one lobe.
         OneLobe = "one_lobe",
+        /// First interfaces above lobes reflect by polynomials.
+        LobesCurve = "lobes_curve",
         /// Rows have one short lobe.
         LobesShort = "lobes_short",
         /// Rows have one lobe of one width.

@@ -111,6 +111,13 @@ impl Features {
                     _ => (&[], 0),
                 };
                 names.extend(words);
+                if set
+                    .materials
+                    .iter()
+                    .any(|material| material.constants.lobes.is_some_and(|lobes| lobes.reflectance.is_some()))
+                {
+                    names.insert(Feature::LobesCurve);
+                }
                 if lobes.iter().any(|lobes| *lobes < most) {
                     names.insert(Feature::LobesMixed);
                 }

@@ -212,6 +212,7 @@ fn with_lobes(mut material: MaterialEntry) -> MaterialEntry {
         inverse_tails: [1.0, 40.0],
         rise: None,
         short: None,
+        reflectance: None,
         varying: None,
         axes: None,
         painted: None,

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::rows::{FINE_ROWS, KEPT, ROWS, is_family, varying};
-use super::shape::Widths;
+use super::shape::{Form, Widths};
 use crate::graph::{Artefact, Inputs, Job, JobKind, Store, result_of};
 use crate::json;
 
@@ -58,45 +58,71 @@ pub fn fitted(stack: &Stack, color: &Color, varying: Option<Varying>, store: &dy
     fits.of(None).varied.clone()
 }
 
-/// Lobes of a material, and their errors with each of [`KEPT`]; one error where a fit has [`FINE_ROWS`], all of which are kept.
+/// Lobes of a material, and their errors.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Fit {
     pub(super) varied: Varied,
-    errors: Vec<FitError>,
-    /// Errors with [`OneWidth`](luthier_layers::models::lobes::OneWidth), of a search where lobes have it.
-    pub(super) of_one_width: Option<Vec<FitError>>,
+    pub(super) own: Errors,
+    /// Errors with a [`Curve`](luthier_layers::models::lobes::Curve), of a search where the material has one.
+    pub(super) curved: Option<Errors>,
     /// A [short lobe](luthier_layers::models::lobes::Short) in place of one lobe with its errors, of a search where the material has one.
     pub(super) short: Option<(Varied, Vec<FitError>)>,
 }
 
+/// Errors with each of [`KEPT`]; one error where a fit has [`FINE_ROWS`], all of which are kept.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Errors {
+    whole: Vec<FitError>,
+    /// With [`OneWidth`](luthier_layers::models::lobes::OneWidth), of a search where lobes have it.
+    pub(super) of_one_width: Option<Vec<FitError>>,
+}
+
+impl Errors {
+    /// Those of a search.
+    fn of(varied: &Varied, judge: &Judge) -> Self {
+        let narrowed = varied.clone().of_one_width();
+        Self { whole: errors(varied, judge), of_one_width: narrowed.map(|varied| errors(&varied, judge)) }
+    }
+}
+
 impl Fit {
     fn new(varied: Varied, judge: &Judge) -> Self {
-        Self { errors: errors(&varied, judge), varied, of_one_width: None, short: None }
+        let own = Errors { whole: errors(&varied, judge), of_one_width: None };
+        Self { varied, own, curved: None, short: None }
     }
 
-    /// With the errors of lobes of one width.
-    fn and_of_one_width(self, judge: &Judge) -> Self {
-        let of_one_width = self.varied.clone().of_one_width().map(|varied| errors(&varied, judge));
-        Self { of_one_width, ..self }
+    /// With the errors of the other forms that it has.
+    fn in_all_forms(self, judge: &Judge) -> Self {
+        let own = Errors::of(&self.varied, judge);
+        let curved = self.varied.clone().of_curve().map(|varied| Errors::of(&varied, judge));
+        Self { own, curved, ..self }
     }
 
     /// The error with so many rows. More than a fit has show the same light.
-    pub(super) fn error(&self, widths: Widths, rows: usize) -> FitError {
-        let errors = match (widths, &self.of_one_width, &self.short) {
+    pub(super) fn error(&self, Form { widths, is_curved }: Form, rows: usize) -> FitError {
+        let own = self.curved.as_ref().filter(|_| is_curved).unwrap_or(&self.own);
+        let errors = match (widths, &own.of_one_width, &self.short) {
             (Widths::One, Some(errors), _) | (Widths::Short, _, Some((_, errors))) => errors,
-            _ => &self.errors,
+            _ => &own.whole,
         };
         errors[KEPT.iter().position(|kept| *kept == rows).unwrap_or(0)]
     }
 
-    /// The lobes, with these widths if they have them.
-    pub(super) fn shaped(&self, widths: Widths) -> Varied {
+    /// The error by which fits are compared: with all rows, and the reflectance of Fresnel's equations.
+    fn own_error(&self) -> f64 {
+        self.own.whole[0].lobe
+    }
+
+    /// The lobes, in this form if they have it.
+    pub(super) fn shaped(&self, Form { widths, is_curved }: Form) -> Varied {
+        let curved = if is_curved { self.varied.clone().of_curve() } else { None };
+        let whole = curved.unwrap_or_else(|| self.varied.clone());
         let other = match widths {
             Widths::Two => None,
-            Widths::One => self.varied.clone().of_one_width(),
+            Widths::One => whole.clone().of_one_width(),
             Widths::Short => self.short.as_ref().map(|(varied, _)| varied.clone()),
         };
-        other.unwrap_or_else(|| self.varied.clone())
+        other.unwrap_or(whole)
     }
 
     /// Relative index of the medium of the lobes.
@@ -181,7 +207,7 @@ impl Job for FitJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 16 } else { 12 }
+        if is_family(self.varying) { 17 } else { 13 }
     }
 
     fn inputs(&self) -> Value {
@@ -219,17 +245,16 @@ impl Job for FitJob {
             return Artefact::new(Fits(vec![Fit::new(traced.fit(most, EXCESS), &judge)]));
         }
         let media = if *keeps_medium { Vec::new() } else { traced.media() };
-        let fits = nearest(&traced, &media, most, &judge).into_iter().enumerate();
-        let fits = fits.map(|(most, fit)| if most <= 1 { fit.and_of_one_width(&judge) } else { fit });
-        let mut fits: Vec<Fit> = fits.collect();
+        let fits = nearest(&traced, &media, most, &judge).into_iter();
+        let mut fits: Vec<Fit> = fits.map(|fit| fit.in_all_forms(&judge)).collect();
         if let Some(one) = fits.get_mut(1) {
             one.short = short(&traced, keeps_medium.then_some(one.index()), &judge);
         }
-        if fits.len() == FINE && fits.iter().all(|fit| fit.error(Widths::Two, ROWS).lobe > WANTED) {
+        if fits.len() == FINE && fits.iter().all(|fit| fit.own_error() > WANTED) {
             let fine =
                 Traced::new(stack, color, *varying, FitSettings { rows: FINE_ROWS, ..FitSettings::of(*varying) });
             let medium = fine.media().iter().position(|index| *index == fits[most].index()).unwrap_or(0);
-            fits.push(Fit::new(fine.in_medium(medium).fit(most, 0.0), &judge));
+            fits.push(Fit::new(fine.in_medium(medium).fit(most, 0.0), &judge).in_all_forms(&judge));
         }
         Artefact::new(Fits(fits))
     }
@@ -244,14 +269,14 @@ impl Job for FitJob {
 fn nearest(traced: &Traced, media: &[f64], most: usize, judge: &Judge) -> Vec<Fit> {
     let judged = |fits: Vec<Varied>| fits.into_iter().map(|varied| Fit::new(varied, judge)).collect::<Vec<Fit>>();
     let mut fits = judged(traced.fit_each(most));
-    if fits.iter().skip(1).all(|fit| fit.error(Widths::Two, ROWS).lobe <= NEAR) {
+    if fits.iter().skip(1).all(|fit| fit.own_error() <= NEAR) {
         return fits;
     }
     let usual = fits[most].index();
     for (medium, _) in media.iter().enumerate().filter(|(_, index)| **index != usual) {
         let others = judged(traced.in_medium(medium).fit_each(most));
         for (fit, other) in fits.iter_mut().zip(others).skip(1) {
-            if other.error(Widths::Two, ROWS).lobe < CLEAR * fit.error(Widths::Two, ROWS).lobe {
+            if other.own_error() < CLEAR * fit.own_error() {
                 *fit = other;
             }
         }

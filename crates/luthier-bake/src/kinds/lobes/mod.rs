@@ -19,7 +19,7 @@ use luthier_material::Material;
 
 use self::fit::{FINE, FitJob, Fits, fit};
 use self::rows::{FINE_ROWS, KEPT, of_model, side};
-use self::shape::{HIDDEN_READS, Widths, parts, reads, shape_of, shape_with};
+use self::shape::{Form, HIDDEN_READS, Widths, parts, reads, shape_of, shape_with};
 use self::tile::LobesJob;
 use super::{Kind, Site};
 use crate::BakeError;
@@ -54,15 +54,16 @@ impl Kind for Table {
             return Ok(None);
         }
         let (fit, axes, format) = (fit(material, site.lobes.is_some()), shape.axes(), shape.format);
-        Ok(Some(Arc::new(LobesJob { fit, most: site.lobes, tile: 0, axes, format })))
+        let is_curved = site.is_curved;
+        Ok(Some(Arc::new(LobesJob { fit, most: site.lobes, is_curved, tile: 0, axes, format })))
     }
 
     /// Tiles for the other nodes over the varying factor, or over the azimuth.
     fn followers(&self, site: &Site<'_>) -> Vec<Arc<dyn Job>> {
-        let Site { material, shape, lobes: most, .. } = *site;
+        let Site { material, shape, lobes: most, is_curved, .. } = *site;
         let fit = fit(material, most.is_some());
         let (tiles, format) = (1..Varied::tiles_of(&fit.stack, fit.varying_of(most)), shape.format);
-        let jobs = tiles.map(|tile| LobesJob { fit: fit.clone(), most, tile, axes: shape.axes(), format });
+        let jobs = tiles.map(|tile| LobesJob { fit: fit.clone(), most, is_curved, tile, axes: shape.axes(), format });
         jobs.map(|job| Arc::new(job) as Arc<dyn Job>).collect()
     }
 }
@@ -113,7 +114,10 @@ pub(crate) fn decide(
         settings.take_lobes(shape_with(materials, widths, lobes, format_of(reads(lobes))));
         return Ok(None);
     }
-    let have_one_width = fits.iter().all(|fits| fits.of(Some(1)).of_one_width.is_some());
+    let have_one_width = fits.iter().all(|fits| fits.of(Some(1)).own.of_one_width.is_some());
+    // The same words of a material have rows over a factor, or of other layers.
+    let are_alone = materials.iter().filter_map(side).next().is_none() && of_model(materials).all(has_lone_rows);
+    let is_curved = are_alone && fits.iter().all(|fits| fits.of(Some(0)).curved.is_some());
     let most = fits.iter().map(|fits| fits.most()).max().unwrap_or(0);
     let others = [(have_one_width, Widths::One), (are_short, Widths::Short)];
     let steps = (0..=most.min(LOBES_MAX)).map(|most| (most, Widths::Two));
@@ -127,7 +131,7 @@ pub(crate) fn decide(
         shape_of(widths, parts(materials, lobes), rows, format_of(widths.reads(lobes)))
     };
     let candidates = choices.iter().map(|&(most, widths, rows)| {
-        let errors = fits.iter().map(|fits| fits.of(Some(most)).error(widths, rows));
+        let errors = fits.iter().map(|fits| fits.of(Some(most)).error(Form { widths, is_curved }, rows));
         let error = errors.fold(FitError::default(), FitError::max);
         let tiles = fits.iter().map(|fits| fits.of(Some(most)).varied.tiles() as u32).sum();
         let Shape { x, y, base, format } = shape_of((most, widths, rows));
@@ -149,12 +153,12 @@ pub(crate) fn decide(
         let errors = materials.iter().enumerate().filter_map(|(number, material)| {
             let fits = [Some(fit(material, true)), side(material).map(|side| fit(&side, true))];
             let fits = fits.into_iter().flatten().filter_map(|job| results.get::<Fits>(job.key()));
-            let errors = fits.map(|fits| fits.of(Some(most)).error(widths, rows));
+            let errors = fits.map(|fits| fits.of(Some(most)).error(Form { widths, is_curved }, rows));
             Some((number, measured(errors.reduce(FitError::max)?)))
         });
         (refusal, errors.collect())
     })?[0];
-    settings.lobes = Some(choices[chosen].0);
+    (settings.lobes, settings.is_curved) = (Some(choices[chosen].0), is_curved);
     settings.take_lobes(shape_of(choices[chosen]));
     Ok(Some(candidates::report(&found[0], chosen, budget)))
 }

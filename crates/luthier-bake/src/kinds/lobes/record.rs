@@ -1,7 +1,7 @@
 //! The view-independent numbers of rows, for manifests.
 
 use luthier_layers::models::lobes::{
-    Axes, Critical, Family, FitError, OneWidth, Painted, Shaping, Short, SlopeAxis, Varying, base_below,
+    Axes, Critical, Curve, Family, FitError, OneWidth, Painted, Shaping, Short, SlopeAxis, Varying, base_below,
 };
 use luthier_lut::{Image, TableKind, TexelFormat};
 use luthier_manifest::{
@@ -12,7 +12,7 @@ use luthier_material::Material;
 
 use super::fit::{Fits, fit};
 use super::rows::{has_base, is_family, most, varying};
-use super::shape::Widths;
+use super::shape::{Form, Widths};
 use crate::graph::{Job, Results};
 use crate::settings::Settings;
 
@@ -28,14 +28,16 @@ pub(super) const UNFITTED: LobesRecord = LobesRecord {
     inverse_tails: [1.0; 2],
     rise: None,
     short: None,
+    reflectance: None,
     varying: None,
     axes: None,
     painted: None,
     error: None,
 };
 
-/// Numbers of a short lobe where nothing was fitted.
-const UNFITTED_SHORT: ShortRecord = ShortRecord { sharpness: [5.0, 0.0, 0.0], reflectance: [0.04, 0.25, 0.25] };
+/// Numbers of a short lobe where nothing was fitted, and its reflectance.
+const UNFITTED_SHORT: ShortRecord = ShortRecord { sharpness: [5.0, 0.0, 0.0] };
+const UNFITTED_CURVE: [f64; 3] = [0.04, 0.36, 0.25];
 
 /// The view-independent numbers of a material's lobes; [`UNFITTED`] in an outline without fits.
 pub(crate) fn record(material: &Material, settings: &Settings, results: &Results) -> LobesRecord {
@@ -65,24 +67,24 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
                 let widths = Widths::of(std::slice::from_ref(material));
                 let rise = (widths != Widths::Two).then_some(0.0);
                 let short = (widths == Widths::Short).then_some(UNFITTED_SHORT);
-                LobesRecord { lobes: form.most() as u32, rise, short, ..unfitted }
+                let reflectance = short.map(|_| UNFITTED_CURVE);
+                LobesRecord { lobes: form.most() as u32, rise, short, reflectance, ..unfitted }
             }
             None => unfitted,
         };
     };
     let fit = fits.of(most);
     let widths = shape.y.as_ref().map_or(Widths::Two, Widths::in_parts);
-    let varied = fit.shaped(widths);
-    let FitError { lobe, lobe_noise, albedo, albedo_noise } = fit.error(widths, shape.x.size as usize);
+    let form = Form { widths, is_curved: settings.is_curved };
+    let varied = fit.shaped(form);
+    let FitError { lobe, lobe_noise, albedo, albedo_noise } = fit.error(form, shape.x.size as usize);
     let error = Some(LobesError { lobe, lobe_noise, albedo, albedo_noise });
     let lobes = &varied.nodes[0];
     let (wide, Critical { cot_sq, width, plain_share }) = (lobes.frame.wide, lobes.axis.critical());
     let (inverse_tails, rise, short) = match lobes.frame.shaping {
         Shaping::Rows => (varied.stored(0, 0).inverse_tails(), None, None),
         Shaping::OneWidth(OneWidth { rise, inverse_tail }) => ([inverse_tail, 0.0], Some(rise), None),
-        Shaping::Short(Short { sharpness, rise, reflectance }) => {
-            ([1.0, 0.0], Some(rise), Some(ShortRecord { sharpness, reflectance }))
-        }
+        Shaping::Short(Short { sharpness, rise }) => ([1.0, 0.0], Some(rise), Some(ShortRecord { sharpness })),
     };
     LobesRecord {
         index: lobes.frame.index,
@@ -95,6 +97,7 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         inverse_tails: texels_of(inverse_tails, shape.format),
         rise,
         short,
+        reflectance: lobes.frame.curve.map(|Curve(numbers)| numbers),
         varying: varied.varying().map(|varying| VaryingRecord {
             factor: match varying {
                 Varying::Alpha => VaryingFactor::AlphaFactor,

@@ -101,6 +101,15 @@ pub(super) fn shape_with(materials: &[Material], widths: Widths, lobes: usize, f
     shape_of(widths, parts(materials, lobes), common_rows(materials), format)
 }
 
+/// Form of the rows of a search, beside the number of lobes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Form {
+    /// Widths for each lobe.
+    pub(super) widths: Widths,
+    /// Whether the first interface reflects by a polynomial. A short lobe has one anyway.
+    pub(super) is_curved: bool,
+}
+
 /// Widths that rows have for a lobe.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Widths {

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::fit::{FitJob, Fits, factor_name, with_rows};
 use super::rows::is_family;
-use super::shape::Widths;
+use super::shape::{Form, Widths};
 use crate::graph::{Artefact, Inputs, Job, JobKind};
 use crate::json;
 use crate::tile::{TileData, color_in_words, lone_tile};
@@ -67,6 +67,8 @@ pub(super) struct LobesJob {
     pub(super) fit: Arc<FitJob>,
     /// Most lobes, if a search decided them.
     pub(super) most: Option<usize>,
+    /// Whether the first interface reflects by a polynomial.
+    pub(super) is_curved: bool,
     /// Number of the tile, over the varying factor or over the azimuth.
     pub(super) tile: usize,
     /// Cosine of the view, and part.
@@ -87,6 +89,7 @@ impl Job for LobesJob {
         json!({
             "fit": self.fit.key().to_string(),
             "most": self.most,
+            "is_curved": self.is_curved,
             "tile": self.tile,
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
             "format": self.format.name(),
@@ -100,7 +103,8 @@ impl Job for LobesJob {
     fn run(&self, inputs: &Inputs<'_>) -> Artefact {
         let [x, y] = &self.axes;
         let fits: &Fits = inputs.part(self.fit.as_ref());
-        let varied = with_rows(fits.of(self.most).shaped(Widths::in_parts(y)), x.size as usize);
+        let form = Form { widths: Widths::in_parts(y), is_curved: self.is_curved };
+        let varied = with_rows(fits.of(self.most).shaped(form), x.size as usize);
         let (lobes, tile) = varied.tile(self.tile);
         let most = (y.max as usize + 1 - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
         let layout = match (varied.varying(), Widths::in_parts(y)) {

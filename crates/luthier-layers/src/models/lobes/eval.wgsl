@@ -106,9 +106,9 @@ fn luthier_wide_shape(prepared: LuthierPreparedLobes, cos_theta: f32) -> f32 {
     return max(1.0 - prepared.medium.y * (away_sq * away_sq * away) - prepared.medium.z * away_sq, 0.0);
 }
 
-//? lobes_short
-/// Reflectance of the first interface beside a short lobe, at the cosine of a facet: a polynomial of the cube of 1 less the cosine.
-fn luthier_short_reflectance(numbers: vec4<f32>, cos_theta_d: f32) -> f32 {
+//? lobes_curve
+/// Reflectance of a first interface at the cosine of a facet, as a polynomial of the cube of 1 less the cosine.
+fn luthier_curve_reflectance(numbers: vec4<f32>, cos_theta_d: f32) -> f32 {
     let away = 1.0 - cos_theta_d;
     let cube = away * away * away;
     return numbers.x + cube * (numbers.y + cube * (numbers.z + cube * numbers.w));
@@ -116,10 +116,31 @@ fn luthier_short_reflectance(numbers: vec4<f32>, cos_theta_d: f32) -> f32 {
 
 /// Reflectance of the first interface at the cosine of a facet.
 fn luthier_first_reflectance(prepared: LuthierPreparedLobes, cos_theta_d: f32) -> vec3<f32> {
-    //? lobes_short
-    return vec3<f32>(luthier_short_reflectance(prepared.reflectance, cos_theta_d));
+    //? lobes_curve
+    return vec3<f32>(luthier_curve_reflectance(prepared.reflectance, cos_theta_d));
     //? else
     return luthier_fresnel_term(prepared.coat, cos_theta_d);
+}
+
+//? lobes_curve
+/// f cos_theta_i of one facet of the first interface, which is isotropic and reflects by a polynomial: `sum` is that of the directions, and `across_sq` its squared part along the
+/// surface.
+fn luthier_light_curved(prepared: LuthierPreparedLobes, wi: vec3<f32>, sum: vec3<f32>, across_sq: f32) -> f32 {
+    let wo = prepared.wo;
+    //? beckmann|free_slopes
+    {
+        let masking = prepared.masking + luthier_slope_lambda(prepared.coat, luthier_coat_across_sq(prepared.coat, wi), wi.z);
+        let facets = luthier_quarter_density(prepared.coat, sum) / (masking * wo.z);
+    }
+    //? else
+    {
+        // Of GGX 1 + 2 Lambda is a root over the cosine.
+        let roots = prepared.coat_roots;
+        let masking = wi.z / (sqrt(roots.x + wi.z * wi.z * roots.y) * roots.w + wi.z * roots.z);
+        let facets = luthier_distribution_term(prepared.coat, 1.0, sum.z * sum.z, across_sq) * masking;
+    }
+    // For unit directions the cosine is half the length of their sum.
+    return luthier_curve_reflectance(prepared.reflectance, 0.5 * length(sum)) * facets;
 }
 
 //? lobes_short
@@ -128,19 +149,7 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     let wo = prepared.wo;
     let sum = vec3<f32>(wi.xy + wo.xy, max(wi.z + wo.z, 1e-16));
     let across_sq = dot(sum.xy, sum.xy);
-    //? beckmann|free_slopes
-    {
-        let masking = prepared.masking + luthier_slope_lambda(prepared.coat, luthier_coat_across_sq(prepared.coat, wi), wi.z);
-        let facets = luthier_quarter_density(prepared.coat, sum) / (masking * wo.z);
-    }
-    //? else
-    {
-        // Of GGX 1 + 2 Lambda is a root over the cosine. The first interface is isotropic.
-        let roots = prepared.coat_roots;
-        let masking = wi.z / (sqrt(roots.x + wi.z * wi.z * roots.y) * roots.w + wi.z * roots.z);
-        let facets = luthier_distribution_term(prepared.coat, 1.0, sum.z * sum.z, across_sq) * masking;
-    }
-    let first = luthier_short_reflectance(prepared.reflectance, 0.5 * length(sum)) * facets;
+    let first = luthier_light_curved(prepared, wi, sum, across_sq);
     //? lobes_tilted
     let lobe = luthier_density_below(prepared.first_shape, luthier_sum_below(prepared, wi));
     //? else
@@ -164,12 +173,18 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
 fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
     let wo = prepared.wo;
     let sum = vec3<f32>(wi.xy + wo.xy, max(wi.z + wo.z, 1e-16));
-    // One facet of the first interface. For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
-    let masking = prepared.masking + luthier_slope_lambda(prepared.coat, luthier_coat_across_sq(prepared.coat, wi), wi.z);
-    let facets = luthier_quarter_density(prepared.coat, sum) / (masking * wo.z);
-    let cos_theta_d = min(0.5 * length(sum), 1.0);
-    var value = luthier_fresnel_term(prepared.coat, cos_theta_d) * facets;
-    //? lobes_patina
+    // One facet of the first interface.
+    //? lobes_curve
+    var value = vec3<f32>(luthier_light_curved(prepared, wi, sum, dot(sum.xy, sum.xy)));
+    //? else
+    {
+        // For unit directions cos_theta_d is half the length of their sum, which does not cancel at grazing angles.
+        let masking = prepared.masking + luthier_slope_lambda(prepared.coat, luthier_coat_across_sq(prepared.coat, wi), wi.z);
+        let facets = luthier_quarter_density(prepared.coat, sum) / (masking * wo.z);
+        let cos_theta_d = min(0.5 * length(sum), 1.0);
+        var value = luthier_fresnel_term(prepared.coat, cos_theta_d) * facets;
+    }
+    //? lobes_patina, !lobes_curve
     if prepared.cover < 1.0 {
         value = mix(luthier_light_bare(prepared, wi, sum, cos_theta_d), value, prepared.cover);
     }

@@ -11,7 +11,7 @@ use luthier_optics::stack::{FilmThickness, Stack};
 use super::fit::{Covariance, cells, covariances, indices};
 use super::tally::Cells;
 use super::{
-    Axes, Below, Family, FirstInterface, FitSettings, Lobes, Mix, Paint, Short, Slopes, Varied, Varying, ViewAxis,
+    Axes, Below, Curve, Family, FirstInterface, FitSettings, Lobes, Mix, Paint, Slopes, Varied, Varying, ViewAxis,
     base_below, patina, shown,
 };
 use crate::references::layered_mc::ColorPaths;
@@ -146,26 +146,25 @@ impl Judge {
     /// The largest errors that the cells of any medium show.
     fn error_at(&self, view: &View, lobes: &Lobes) -> FitError {
         let Some(below) = lobes.below(view.wo) else { return FitError::default() };
-        let short = lobes.frame.shaping.short();
-        let errors = view.counted.iter().map(|counted| self.error_in(counted, view, &below, short));
+        let errors = view.counted.iter().map(|counted| self.error_in(counted, view, &below, lobes.frame.curve));
         errors.fold(FitError::default(), FitError::max)
     }
 
-    /// Light of the first interface is known, and not counted. A short lobe has another reflectance of it: what that adds is counted.
+    /// Light of the first interface is known, and not counted. A [`Curve`] is another reflectance of it: what that adds is counted.
     fn error_in(
         &self,
         Counted { cells, energies, squares }: &Counted,
         view: &View,
         below: &Below,
-        short: Option<Short>,
+        curve: Option<Curve>,
     ) -> FitError {
         let at = self.axes.map_or(view.wo, |axes| axes.inside(view.wo));
         let mut found = vec![[0.0; 3]; energies.len()];
         let added = |wi| {
-            let (first, short) = (self.first.as_ref()?, short?);
+            let (first, curve) = (self.first.as_ref()?, curve?);
             let lobe = first.facets.lobe(Masking::Smith, wi, view.wo)?;
             let own = first.reflectance.rgb(lobe.cos_theta_d);
-            Some(own.map(|own| lobe.value * (short.reflected(lobe.cos_theta_d) - own)))
+            Some(own.map(|own| lobe.value * (curve.at(lobe.cos_theta_d) - own)))
         };
         let by_cell = cells.light(at, |wi| {
             let wi = self.axes.map_or(wi, |axes| axes.outside(wi));

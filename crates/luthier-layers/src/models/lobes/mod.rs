@@ -16,8 +16,10 @@
 //!   share them.
 //! - **Energies.** E are energies by channel, taken from the simulation view by view, and A is the share of a shape above the horizon. So
 //!   the directional albedo of a row is that of the simulation, whatever the shapes are.
-//! - **A short lobe** ([`Short`]) pays for less: one lobe with the tail of GGX takes the light of the remainder, too, its widths are polynomials of the view, and the
-//!   first interface reflects by a polynomial of the cosine. A row is one read. The energy that the polynomial gets wrong is taken from the lobe.
+//! - **A curve** ([`Curve`]) in place of Fresnel's equations saves the root and the quotients of the first interface: a polynomial of the cosine of a facet. The energy that it
+//!   gets wrong is taken from what comes from below. Limits on errors take it wherever it is near.
+//! - **A short lobe** ([`Short`]) pays for less: the first interface reflects by a curve, one lobe with the tail of GGX takes the light of the remainder, too, and its widths are
+//!   polynomials of the view. A row is one read.
 //! - **A Lambertian base** sends light that does not remember from where it came. It has one shape at all views, that of the remainder, and a closed
 //!   form in the albedo ([`BaseLight`]). Rows store it apart, so that places can recolour the base without a new fit.
 //! - **Rows.** Everything that depends on the view is in rows over [`ViewAxis`], linear between. An anisotropic stack has such rows at several azimuths
@@ -61,7 +63,7 @@ pub use fit::{FitSettings, Simulation};
 pub use fitted::Fitted;
 pub use judge::{FitError, Judge};
 pub use patina::{Cover, bare};
-pub use rows::{BaseLight, Critical, Lobe, OneWidth, Row, Shaping, Short, ViewAxis};
+pub use rows::{BaseLight, Critical, Curve, Lobe, OneWidth, Row, Shaping, Short, ViewAxis};
 pub use shape::{Shape, TAIL_MIN, Wide};
 pub(crate) use varied::scaled_along;
 pub use varied::{Fit, Traced, Varied, Varying};
@@ -140,6 +142,8 @@ pub struct Frame {
     pub stretch: Option<Stretch>,
     /// Source of the widths of lobes.
     pub shaping: Shaping,
+    /// The reflectance of the first interface, if that is a polynomial in place of its own.
+    pub curve: Option<Curve>,
 }
 
 /// A diffuse base below interfaces, which places may recolour.
@@ -295,8 +299,7 @@ impl Lobes {
     /// Reflectance of the first interface at the cosine of a facet, by channel; `None` for a diffuse base alone.
     pub(crate) fn reflected(&self, cos_theta_d: f64) -> Option<Rgb> {
         let first = self.first.as_ref()?;
-        let short = self.frame.shaping.short();
-        Some(short.map_or_else(|| first.reflectance.rgb(cos_theta_d), |short| [short.reflected(cos_theta_d); 3]))
+        Some(self.frame.curve.map_or_else(|| first.reflectance.rgb(cos_theta_d), |curve| [curve.at(cos_theta_d); 3]))
     }
 
     /// The row of a view (unit, above the surface), between fitted rows.

@@ -221,6 +221,14 @@ impl Varied {
         Some(self)
     }
 
+    /// Lobes whose first interface reflects by a polynomial, see [`super::Curve`]: where nothing varies, and one is near.
+    #[must_use]
+    pub fn of_curve(mut self) -> Option<Self> {
+        let [lobes] = <[Lobes; 1]>::try_from(self.nodes).ok().filter(|_| self.varying.is_none())?;
+        self.nodes = vec![lobes.of_curve()?];
+        Some(self)
+    }
+
     /// Every `step`-th row. `step` has to divide the number of steps between rows.
     #[must_use]
     pub fn thinned(mut self, step: usize) -> Self {

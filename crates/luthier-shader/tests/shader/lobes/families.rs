@@ -158,6 +158,7 @@ pub(super) fn material(family: Family) -> MaterialEntry {
         inverse_tails: [inverse_tail(family); 2],
         rise: None,
         short: None,
+        reflectance: None,
         varying: Some(VaryingRecord {
             factor: VaryingFactor::Family,
             tiles: family.nodes() as u32,
@@ -385,6 +386,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
             base: Some(Painted { albedo: ALBEDO, is_lambertian: true }),
             stretch: None,
             shaping: Shaping::Rows,
+            curve: None,
         };
         let mut brightest = 0.0_f64;
         for (k, (wi, wo)) in directions(160).enumerate() {

@@ -1,5 +1,6 @@
 //! The shader of `lobes` against its f64 twin, on rows that no fit has made.
 
+mod curve;
 mod families;
 mod normals;
 mod one_width;
@@ -118,6 +119,7 @@ fn light_from_below_is_that_of_the_twin() {
             inverse_tails: [1.0, 40.0],
             rise: None,
             short: None,
+            reflectance: None,
             varying: None,
             axes: None,
             painted: None,
@@ -141,7 +143,15 @@ fn light_from_below_is_that_of_the_twin() {
             };
             let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>(), false);
             let expected = Below::new(
-                Frame { index: 1.4f32.into(), wide, axes: None, base: None, stretch: None, shaping: Shaping::Rows },
+                Frame {
+                    index: 1.4f32.into(),
+                    wide,
+                    axes: None,
+                    base: None,
+                    stretch: None,
+                    shaping: Shaping::Rows,
+                    curve: None,
+                },
                 row,
                 eye,
             )
@@ -190,7 +200,15 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
         record.integral = wide.integral();
         record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1, factors, family: None });
-        let frame = Frame { index: record.index, wide, axes: None, base: None, stretch: None, shaping: Shaping::Rows };
+        let frame = Frame {
+            index: record.index,
+            wide,
+            axes: None,
+            base: None,
+            stretch: None,
+            shaping: Shaping::Rows,
+            curve: None,
+        };
         let materials = [material];
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let machine = lit_from_below(&text, &materials, &image);
@@ -309,7 +327,8 @@ fn lobes_in_axes_are_those_of_the_twin() {
         let record = materials[number].constants.lobes.unwrap();
         let axes = record.axes.map(|AxesRecord { turn, is_mirrored, .. }| Axes { turn, is_mirrored });
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame = Frame { index: record.index, wide, axes, base: None, stretch: None, shaping: Shaping::Rows };
+        let frame =
+            Frame { index: record.index, wide, axes, base: None, stretch: None, shaping: Shaping::Rows, curve: None };
         let groups = if variance > 0.0 { &[FunctionGroup::Surface][..] } else { &[] };
         let set = MaterialSet {
             functions: groups.iter().copied().collect(),
@@ -369,6 +388,7 @@ fn values_of_a_place_change_lobes_as_in_the_twin() {
             base: has_base.then_some(Painted { albedo: [0.3, 0.5, 0.7], is_lambertian }),
             stretch: None,
             shaping: Shaping::Rows,
+            curve: None,
         };
         let painted = frame.base.map(|Painted { albedo, is_lambertian }| PaintedRecord {
             albedo,
@@ -510,6 +530,7 @@ fn directions_are_drawn_as_their_density_says() {
             inverse_tails: [1.0, 40.0],
             rise: None,
             short: None,
+            reflectance: None,
             varying,
             axes,
             painted: None,

@@ -27,8 +27,15 @@ fn own_normals_change_lobes_as_in_the_twin() {
         let record = given.constants.lobes.unwrap();
         let painted = Painted { albedo: [0.3, 0.5, 0.7], is_lambertian: false };
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame =
-            Frame { index: record.index, wide, axes: None, base: Some(painted), stretch: None, shaping: Shaping::Rows };
+        let frame = Frame {
+            index: record.index,
+            wide,
+            axes: None,
+            base: Some(painted),
+            stretch: None,
+            shaping: Shaping::Rows,
+            curve: None,
+        };
         let of_base = Some(PaintedRecord { albedo: painted.albedo, moments: None });
         given.constants.lobes = Some(LobesRecord { integral: wide.integral(), painted: of_base, ..record });
         given.constants.flakes = has_flakes.then_some(FLAKES);

@@ -65,7 +65,15 @@ fn one_width_gives_the_other() {
             tail: 1.0 / INVERSE_TAIL,
         };
         let row = Row { albedo_dir: [0.9, 0.8, 0.7], lobes: vec![lobe], wide: [r, g, b], base: None };
-        let frame = Frame { index: 1.4f32.into(), wide, axes: None, base: None, stretch: None, shaping: Shaping::Rows };
+        let frame = Frame {
+            index: 1.4f32.into(),
+            wide,
+            axes: None,
+            base: None,
+            stretch: None,
+            shaping: Shaping::Rows,
+            curve: None,
+        };
         let expected = Below::new(frame, row, eye).eval(light);
         assert_light(&machine, [wi, wo], expected, "one width");
         brightest = expected.into_iter().fold(brightest, f64::max);

@@ -44,7 +44,15 @@ fn patina_mixes_the_light_of_two_ends() {
         let given = materials[number].clone();
         let record = given.constants.lobes.unwrap();
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame = Frame { index: record.index, wide, axes: None, base: None, stretch: None, shaping: Shaping::Rows };
+        let frame = Frame {
+            index: record.index,
+            wide,
+            axes: None,
+            base: None,
+            stretch: None,
+            shaping: Shaping::Rows,
+            curve: None,
+        };
         let bare = given.constants.patina.map(|patina| patina.bare);
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let gray = Image { data: vec![GRAY; 36], ..Image::zeros(3, 3, 4) };
@@ -119,7 +127,15 @@ fn flakes_turn_the_lobes_that_patina_covers() {
             Some(FlakesRecord { seed: 1, count: 9, tiling: 1.0, spread: 0.1, scale: 1.0, fade_start: 1.0 });
         let record = constants.lobes.unwrap();
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame = Frame { index: record.index, wide, axes: None, base: None, stretch: None, shaping: Shaping::Rows };
+        let frame = Frame {
+            index: record.index,
+            wide,
+            axes: None,
+            base: None,
+            stretch: None,
+            shaping: Shaping::Rows,
+            curve: None,
+        };
         let index = layers[0].eta;
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let number = |structure: &str, name: &str| {

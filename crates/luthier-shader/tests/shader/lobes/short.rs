@@ -15,7 +15,7 @@ use crate::scenes::tables;
 
 const SHARPNESS: [f64; 3] = [8.0, -2.0, 1.5];
 const RISE: f64 = -0.4;
-const REFLECTANCE: [f64; 3] = [0.04, 0.2, 0.3];
+pub(super) const REFLECTANCE: [f64; 3] = [0.04, 0.2, 0.3];
 const INDEX: f64 = 1.4;
 
 /// Oracle: a lobe whose widths are written out by hand, in a frame that knows nothing of short lobes, and beside it a first interface by other formulas. That is black
@@ -38,7 +38,8 @@ fn a_short_lobe_has_the_widths_of_the_view() {
             lobes: 1,
             inverse_tails: [1.0, 0.0],
             rise: Some(RISE),
-            short: Some(ShortRecord { sharpness: SHARPNESS, reflectance: REFLECTANCE }),
+            short: Some(ShortRecord { sharpness: SHARPNESS }),
+            reflectance: Some(REFLECTANCE),
             ..record
         });
         for layer in materials.iter_mut().flat_map(|material| &mut material.layers) {
@@ -85,6 +86,7 @@ fn a_short_lobe_has_the_widths_of_the_view() {
                 base: None,
                 stretch: None,
                 shaping: Shaping::Rows,
+                curve: None,
             };
             let below = Below::new(frame, row, eye).eval(light);
             let first = if is_closed { first_interface(coat.alpha, light, eye) } else { 0.0 };
@@ -105,7 +107,7 @@ fn a_short_lobe_has_the_widths_of_the_view() {
 }
 
 /// The first interface: D G F / (4 cos), Smith's masking by tangents.
-fn first_interface(alpha: f64, light: DVec3, eye: DVec3) -> f64 {
+pub(super) fn first_interface(alpha: f64, light: DVec3, eye: DVec3) -> f64 {
     let half = (light + eye).normalize();
     let d = microfacet::distribution(Distribution::Ggx, alpha, half.z, half.x * half.x + half.y * half.y);
     let lambda = |w: DVec3| {

@@ -39,7 +39,15 @@ fn a_third_lobe_comes_after_the_albedo() {
     let (layout, image) = rows_of_three();
     let axis = ViewAxis::new(2, Critical::default());
     let wide = Wide::new([0.6, 0.3], axis);
-    let frame = Frame { index: 1.4f32.into(), wide, axes: None, base: None, stretch: None, shaping: Shaping::Rows };
+    let frame = Frame {
+        index: 1.4f32.into(),
+        wide,
+        axes: None,
+        base: None,
+        stretch: None,
+        shaping: Shaping::Rows,
+        curve: None,
+    };
     let mut two = set("lobes")[0].clone();
     let record = two.constants.lobes.unwrap();
     let record = LobesRecord {

@@ -70,6 +70,7 @@ impl Family {
                     base: Some(Painted { albedo: own, is_lambertian: true }),
                     stretch: None,
                     shaping: Shaping::Rows,
+                    curve: None,
                 },
                 axis,
                 rows,

@@ -259,6 +259,7 @@ impl<'a> Problem<'a> {
                 base: self.simulation.base,
                 stretch: None,
                 shaping: Shaping::Rows,
+                curve: None,
             },
             axis: *axis,
             rows,

@@ -74,15 +74,16 @@ struct LuthierPreparedLobes {
         leaning: vec3<f32>,
         lean: vec2<f32>,
     }
-    //? lobes_short
+    //? lobes_curve
     {
-        /// Numbers of the reflectance of the first interface, see `luthier_short_reflectance`.
+        /// Numbers of the reflectance of the first interface, see `luthier_curve_reflectance`.
         reflectance: vec4<f32>,
-        /// Numbers of the lobe as a quadratic form, see `luthier_light_lobes`.
-        form: vec4<f32>,
         /// Of a first interface of GGX: its squared slope parameter, 1 less that, and 2 pi times that square times a root of the cosine of the eye and times the cosine.
         coat_roots: vec4<f32>,
     }
+    //? lobes_short
+    /// Numbers of the lobe as a quadratic form, see `luthier_light_lobes`.
+    form: vec4<f32>,
     /// Share of the surface that the first interface covers.
     cover: f32,
     /// The layer that is bare elsewhere, and 1 + Lambda of the eye there.
@@ -465,16 +466,20 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         let medium = luthier_materials[header + $word_veil];
         prepared.medium = vec4<f32>(medium.x, 0.0, 0.0, 1.0 / LUTHIER_PI);
         prepared.reflectance = vec4<f32>(medium.yzw, 1.0 - medium.y - medium.z - medium.w);
-        //? !beckmann, !free_slopes
-        {
-            let alpha_sq = 1.0 / prepared.coat.falloff;
-            let left = 1.0 - alpha_sq;
-            let area = 2.0 * LUTHIER_PI * alpha_sq;
-            prepared.coat_roots = vec4<f32>(alpha_sq, left, area * sqrt(alpha_sq + wo.z * wo.z * left), area * wo.z);
-        }
     }
     //? else
-    prepared.medium = luthier_materials[header + $word_veil];
+    {
+        prepared.medium = luthier_materials[header + $word_veil];
+        //? lobes_curve
+        prepared.reflectance = luthier_materials[header + $word_phong_specular];
+    }
+    //? lobes_curve, !beckmann, !free_slopes
+    {
+        let alpha_sq = 1.0 / prepared.coat.falloff;
+        let left = 1.0 - alpha_sq;
+        let area = 2.0 * LUTHIER_PI * alpha_sq;
+        prepared.coat_roots = vec4<f32>(alpha_sq, left, area * sqrt(alpha_sq + wo.z * wo.z * left), area * wo.z);
+    }
     prepared.inside_cos = sqrt(luthier_inside_cos_sq(prepared.medium, wo.z));
     //? lobes_tilted
     //? one_lobe|two_lobes

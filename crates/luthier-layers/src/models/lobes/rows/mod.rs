@@ -1,5 +1,6 @@
 //! Rows over the view.
 
+mod curve;
 mod one_width;
 mod shaping;
 mod short;
@@ -10,6 +11,7 @@ use super::LOBES;
 use super::shape::{Shape, TAIL_MIN};
 use crate::least_squares::solve;
 
+pub use curve::Curve;
 pub use one_width::OneWidth;
 pub use shaping::Shaping;
 pub use short::Short;
@@ -736,6 +738,7 @@ mod tests {
             base: None,
             stretch: None,
             shaping: Shaping::Rows,
+            curve: None,
         };
         let given = Lobes { first: None, frame, axis, rows: (0..7).map(row).collect() };
         let narrowed = given.clone().of_one_width().unwrap();

@@ -24,12 +24,4 @@ impl Shaping {
             Self::Short(short) => short.shaped(stored, sin_theta),
         }
     }
-
-    /// The short lobe.
-    pub fn short(self) -> Option<Short> {
-        match self {
-            Self::Short(short) => Some(short),
-            Self::Rows | Self::OneWidth(_) => None,
-        }
-    }
 }

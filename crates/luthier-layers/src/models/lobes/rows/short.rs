@@ -2,18 +2,18 @@
 
 use glam::DVec3;
 
-use super::{Lobe, Row, Shaping};
+use super::curve::seen_at;
+use super::{Curve, Lobe, Row, Shaping};
 use crate::least_squares::solve;
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::{LEAVING_MIN, Leaving};
-use crate::models::lobes::{FirstInterface, Lobes, Wide};
+use crate::models::lobes::{Lobes, Wide};
 
 /// One short lobe: all but its energy and its shift follows from the view, it has the tail of GGX, and no remainder is beside it. A row is the energy with the
 /// shift, which is one read.
 ///
 /// With s, the squared sine of the view, its sharpness is `a + b s + c s^2` along the plane of the eye, and `1 + rise s` times as much across it. The first interface
-/// reflects `f + u (p + u (q + (1 - f - p - q) u))`, u being the cube of 1 less the cosine of a facet: for an index of 1.5 this is within .002 of Fresnel's equations, where
-/// Schlick's form is within .036.
+/// reflects by a [`Curve`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Short {
@@ -21,8 +21,6 @@ pub struct Short {
     pub sharpness: [f64; 3],
     /// Growth of the ratio of the widths over the squared sine of the view.
     pub rise: f64,
-    /// The f, p and q of the reflectance of the first interface.
-    pub reflectance: [f64; 3],
 }
 
 /// Least share of the sharpness of a row that its curve may leave, and the inverse of the greatest.
@@ -32,15 +30,12 @@ const SHARE_MIN: f64 = 0.3;
 /// four of the digits of f32 there.
 const WIDTHS_MAX: f64 = 24.0;
 
-/// Cosines at which a reflectance is approximated.
-const COSINES: u32 = 256;
-
 impl Short {
     /// Number of the first of the parts of rows, which are those of [`OneWidth`](super::OneWidth) from there on. No other rows begin there.
     pub const FIRST_PART: i32 = 1;
 
     /// The numbers of rows with one lobe each, seen at these sines; `None` where the curves are not near enough to the rows. Least squares weigh by energies.
-    fn of(rows: &[Row], sines: &[f64], reflectance: [f64; 3]) -> Option<Self> {
+    fn of(rows: &[Row], sines: &[f64]) -> Option<Self> {
         let (mut matrix, mut right) = (vec![vec![0.0; 3]; 3], vec![0.0; 3]);
         let (mut sum, mut squares) = (0.0, 0.0);
         for (row, sin) in rows.iter().zip(sines) {
@@ -60,7 +55,7 @@ impl Short {
             return None;
         }
         let found = solve(matrix, right);
-        let short = Self { sharpness: [found[0], found[1], found[2]], rise: sum / squares, reflectance };
+        let short = Self { sharpness: [found[0], found[1], found[2]], rise: sum / squares };
         let is_near = rows.iter().zip(sines).all(|(row, sin)| {
             let (lobe, [along, across]) = (row.lobes[0], short.widths(sin * sin));
             let shares = [along / lobe.sharpness[0], across / lobe.sharpness[1]];
@@ -81,41 +76,6 @@ impl Short {
     pub(super) fn shaped(self, stored: Lobe, sin_theta: f64) -> Lobe {
         Lobe { sharpness: self.widths(sin_theta * sin_theta), tail: 1.0, ..stored }
     }
-
-    /// Reflectance of the first interface at the cosine of a facet.
-    pub fn reflected(self, cos_theta_d: f64) -> f64 {
-        curve(self.reflectance, cos_theta_d)
-    }
-
-    /// The numbers that are nearest to a reflectance, by least squares over the cosine.
-    fn nearest(reflectance: impl Fn(f64) -> f64) -> [f64; 3] {
-        let f = reflectance(1.0);
-        let (mut matrix, mut right) = (vec![vec![0.0; 2]; 2], vec![0.0; 2]);
-        for i in 0..COSINES {
-            let cos_theta = (f64::from(i) + 0.5) / f64::from(COSINES);
-            let [without, p, q] =
-                [[f, 0.0, 0.0], [f, 1.0, 0.0], [f, 0.0, 1.0]].map(|numbers| curve(numbers, cos_theta));
-            let slopes = [p - without, q - without];
-            for (row, own) in slopes.into_iter().enumerate() {
-                right[row] += own * (reflectance(cos_theta) - without);
-                (0..2).for_each(|column| matrix[row][column] += own * slopes[column]);
-            }
-        }
-        let found = solve(matrix, right);
-        [f, found[0], found[1]]
-    }
-}
-
-fn curve([f, p, q]: [f64; 3], cos_theta_d: f64) -> f64 {
-    let away = 1.0 - cos_theta_d;
-    let cube = away * away * away;
-    f + cube * (p + cube * (q + cube * (1.0 - f - p - q)))
-}
-
-/// Whether a curve is a reflectance: that of a film may leave 0..=1.
-fn is_reflectance(numbers: [f64; 3]) -> bool {
-    let cosines = (0..=COSINES).map(|i| f64::from(i) / f64::from(COSINES));
-    cosines.map(|cos_theta| curve(numbers, cos_theta)).all(|reflected| (-1e-12..=1.0 + 1e-12).contains(&reflected))
 }
 
 impl Lobes {
@@ -127,15 +87,13 @@ impl Lobes {
             .first
             .as_ref()
             .filter(|_| self.frame.axes.is_none() && self.frame.base.is_none() && self.axis.critical().cot_sq == 0.0)?;
-        let places = (0..self.rows.len()).map(|row| self.axis.cos_theta(row as f64));
-        let views: Vec<DVec3> = places.map(|cos| DVec3::new(((1.0 - cos) * (1.0 + cos)).sqrt(), 0.0, cos)).collect();
+        let views: Vec<DVec3> = (0..self.rows.len()).map(|row| seen_at(self.axis.cos_theta(row as f64))).collect();
         let sines: Vec<f64> = views.iter().map(|view| view.x).collect();
-        let mean = |cos_theta: f64| first.reflectance.rgb(cos_theta).iter().sum::<f64>() / 3.0;
-        let reflectance = Some(Short::nearest(mean)).filter(|numbers| is_reflectance(*numbers))?;
-        let short = Short::of(&self.rows, &sines, reflectance)?;
+        let curve = Curve::of(first)?;
+        let short = Short::of(&self.rows, &sines)?;
         for (row, view) in self.rows.iter_mut().zip(&views) {
             let energies = row.energies();
-            let excess = first.excess(*view, short);
+            let excess = first.excess(*view, curve);
             let leaving = Leaving::new(refracted(*view, self.frame.index), self.frame.index);
             let stored = Lobe { sharpness: [1.0; 2], shear: 0.0, tail: 1.0, ..row.lobes[0] };
             let share = leaving.summed(&short.shaped(stored, view.x), view.x).clamp(LEAVING_MIN, 1.0);
@@ -147,29 +105,7 @@ impl Lobes {
         }
         self.frame.wide = Wide::new([0.0; 2], self.axis);
         self.frame.shaping = Shaping::Short(short);
+        self.frame.curve = Some(curve);
         Some(self)
-    }
-}
-
-impl FirstInterface {
-    /// Energy that single facets send to `wo` by the reflectance of a short lobe less that by their own, by channel.
-    fn excess(&self, wo: DVec3, short: Short) -> [f64; 3] {
-        let (own, other) = (self.energy(wo), self.energy_by(wo, |cos_theta| [short.reflected(cos_theta); 3]));
-        [0, 1, 2].map(|c: usize| other[c] - own[c])
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use luthier_optics::dielectric_albedo::fresnel_dielectric;
-
-    use super::*;
-
-    /// The reflectance of an index next to 1 begins late, and a polynomial has waves below 0 before.
-    #[test]
-    fn curves_below_0_are_no_reflectances() {
-        let of = |index| is_reflectance(Short::nearest(|cos_theta| fresnel_dielectric(index, cos_theta)));
-        assert!(of(1.1) && of(1.5) && of(2.5));
-        assert!(!of(1.01));
     }
 }

@@ -2,10 +2,11 @@
 
 use luthier_optics::color::Color;
 use luthier_optics::dielectric_albedo::fresnel_dielectric;
+use luthier_optics::ior::{Ior, IorSample};
 use luthier_optics::stack::{Base, Diffuse, Distribution, Stack, Surface};
 
 use super::{NM, coat, direction, integral, lacquered, layer, metal, stack};
-use crate::models::lobes::{FitSettings, Judge, Lobes, Shaping, Simulation, may_be_short};
+use crate::models::lobes::{Curve, FitSettings, Judge, Lobes, Simulation, may_be_short};
 
 const COLOR: Color = Color::ThreeWavelengths(NM);
 
@@ -20,13 +21,12 @@ fn short() -> Lobes {
 /// Oracle: Fresnel's equations.
 #[test]
 fn the_reflectance_is_near_to_fresnels() {
-    let Shaping::Short(short) = short().frame.shaping else { panic!("no short lobe") };
+    let curve = short().frame.curve.unwrap();
     for step in 0..=100 {
         let cos_theta = f64::from(step) / 100.0;
-        let (found, expected) = (short.reflected(cos_theta), fresnel_dielectric(1.5, cos_theta));
+        let (found, expected) = (curve.at(cos_theta), fresnel_dielectric(1.5, cos_theta));
         assert!((found - expected).abs() < 2.5e-3, "{cos_theta}: {found} {expected}");
     }
-    assert!((short.reflected(0.0) - 1.0).abs() < 1e-12 && (short.reflected(1.0) - 0.04).abs() < 1e-12);
 }
 
 /// Oracles: rows of two lobes from the same paths, and a quadrature of the values.
@@ -49,6 +49,24 @@ fn a_short_lobe_keeps_the_energy_of_the_simulation() {
     }
 }
 
+/// Oracle: a quadrature of the values. The albedo of other forms with the polynomial is that of the same form without it.
+#[test]
+fn a_polynomial_keeps_the_energy_of_the_simulation() {
+    let own = simulated(&lacquered()).fit(1);
+    let curved = own.clone().of_curve().unwrap();
+    assert!(own.rows.iter().zip(&curved.rows).all(|(own, curved)| own.wide != curved.wide || own.wide == [0.0; 3]));
+    for theta_deg in [0.0, 25.0, 50.0, 70.0] {
+        let [own, curved] = [&own, &curved].map(|lobes| lobes.prepare(direction(theta_deg, 0.4)).unwrap());
+        for channel in 0..3 {
+            let [without, with] = [&own, &curved].map(|lobes| lobes.albedo_dir()[channel]);
+            let values = [&own, &curved].map(|lobes| integral(direction(theta_deg, 0.4), |wi| lobes.eval(wi)[channel]));
+            assert!((without - with).abs() < 1e-9, "{theta_deg} {channel}: {without} {with}");
+            // The quadrature sees both alike.
+            assert!((values[0] - values[1]).abs() < 1e-3, "{theta_deg} {channel}: {values:?}");
+        }
+    }
+}
+
 /// One lobe with the tail of GGX is near to light of GGX. A judge sees what the reflectance adds.
 #[test]
 fn a_judge_tells_how_near_it_is() {
@@ -57,10 +75,24 @@ fn a_judge_tells_how_near_it_is() {
     let [near, far] = [&short, &none].map(|lobes| judge.error_of(|_| lobes.clone()).lobe);
     assert!(near < 0.06 && far > 0.3, "{near} {far}");
     let mut bright = short.clone();
-    let Shaping::Short(numbers) = &mut bright.frame.shaping else { panic!("no short lobe") };
-    numbers.reflectance[0] += 0.3;
+    let Some(Curve(numbers)) = &mut bright.frame.curve else { panic!("no curve") };
+    numbers[0] += 0.3;
     let found = judge.error_of(|_| bright.clone()).lobe;
     assert!(found > near + 0.05, "{found} {near}");
+}
+
+/// Colours of a metal have no one polynomial, and anisotropic facets none at all.
+#[test]
+fn coloured_and_anisotropic_first_interfaces_have_no_polynomial() {
+    let mut brushed = lacquered();
+    brushed.layers[0].surface = Surface { distribution: Distribution::Ggx, alpha_x: 0.4, alpha_y: 0.15, rotation: 0.3 };
+    let steps = [(0.2, 3.9), (0.9, 2.4), (1.2, 2.2)];
+    let colored = NM.into_iter().zip(steps).map(|(wavelength_nm, (n, k))| IorSample { wavelength_nm, n, k });
+    let copper = Base::Conductor { ior: Ior::sampled(colored.rev().collect()).unwrap() };
+    assert!(simulated(&stack(vec![layer(0.2, metal())])).fit(0).of_curve().is_some());
+    for other in [stack(vec![layer(0.2, copper)]), brushed] {
+        assert!(simulated(&other).fit(0).of_curve().is_none(), "{other:?}");
+    }
 }
 
 #[test]
