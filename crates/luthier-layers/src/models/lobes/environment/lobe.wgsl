@@ -49,7 +49,7 @@ struct LuthierShownBlur {
     share: f32,
 }
 
-/// What the horizon leaves of a blur about a place: the mean of a Gaussian that is cut there, and its standard deviation across the horizon, which is
+/// A blur about a place, as far as it is above the horizon: the mean of a Gaussian that is cut there, and its standard deviation across the horizon, which is
 /// read in all directions. An exponential stands for the hazard of the normal distribution: from half a standard deviation below the horizon on it is
 /// within .012, and within .1 from one below.
 fn luthier_shown_above(place: LuthierShownPlace, width: f32) -> LuthierShownBlur {
