@@ -11,11 +11,23 @@ use crate::diagnostic::Sink;
 /// other mistakes would mislead.
 pub(crate) fn parse_toml<'t>(text: &'t str, sink: &mut Sink<'_>) -> Option<Spanned<DeTable<'t>>> {
     let (document, errors) = DeTable::parse_recoverable(text);
+    if let (Some(first), Some(format)) = (errors.first(), format_of(text)) {
+        let start = first.span().map_or(0, |span| span.start);
+        let hint = "`luthier import` writes material files from glTF, MaterialX and the JSON of physicallybased.info";
+        sink.error(start..start, format!("not TOML: this is {format}"), Some(hint.to_owned()));
+        return None;
+    }
     for error in &errors {
         let hint = error.message().contains("duplicate key").then(|| "keep one of the two".to_owned());
         sink.error(error.span().unwrap_or(0..0), format!("not TOML: {}", error.message()), hint);
     }
     errors.is_empty().then_some(document)
+}
+
+/// The format of a text that is none of TOML, by how it begins.
+fn format_of(text: &str) -> Option<&'static str> {
+    let formats = [("glTF", "binary glTF"), ("{", "JSON"), ("<", "XML")];
+    formats.into_iter().find_map(|(start, format)| text.trim_start().starts_with(start).then_some(format))
 }
 
 /// A table of the document and where it stands, read by key. A value of another type reads as absent: the checker has

@@ -16,7 +16,7 @@ use luthier_layers::monochrome::Monochrome;
 use luthier_layers::registry::{model, models};
 use luthier_layers::twins::shaded::Place;
 use luthier_material::{FileKind, Material};
-use luthier_optics::stack::Stack;
+use luthier_optics::stack::{Base, Layer, Stack};
 use luthier_terminal::{Failure, Outcome, complain, valid};
 use serde_json::{Value, json};
 
@@ -177,6 +177,13 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         let names = unshown.join(" and ");
         complain(&format!("note: model `{name}` does not show {names} of {file}"));
     }
+    for text in unheard(&of.material.stack, &given) {
+        complain(&format!("note: {text} of {file}"));
+    }
+    let is_isotropic = of.model.info().shading().is_some_and(|model| model.facts().is_isotropic);
+    if is_isotropic && of.material.stack.layers.iter().any(Layer::is_anisotropic) {
+        complain(&format!("note: model `{name}` leaves out anisotropy of {file}: it takes mean slope parameters"));
+    }
     let mut bins_nm = None;
     if let (Some(path), Some(excitation), Some(seen)) = (&inputs.matrix, inputs.excitation, options.wavelength) {
         let matrix = Reradiation::read(path)?;
@@ -185,6 +192,23 @@ fn subject(options: &EvalOptions, name: &str) -> Outcome<Subject> {
         bins_nm = Some(bins);
     }
     Ok(Subject { of: Arc::new(of), surface, bins_nm })
+}
+
+/// Factors that change nothing, because the first layer of a stack has no part that they are on.
+fn unheard(stack: &Stack, given: &Inputs) -> Vec<&'static str> {
+    let Some(first) = stack.layers.first() else { return Vec::new() };
+    let has_slab = matches!(first.base, Base::Dielectric { .. });
+    let parts = [
+        (
+            given.slab_factor.is_some() && !has_slab,
+            "--slab-factor changes nothing: no slab is below the first interface",
+        ),
+        (
+            given.film_factor.is_some() && first.films.is_empty(),
+            "--film-factor changes nothing: no film is on the first interface",
+        ),
+    ];
+    parts.into_iter().filter_map(|(is_unheard, text)| is_unheard.then_some(text)).collect()
 }
 
 /// Name of a surface, and the normal at the place.

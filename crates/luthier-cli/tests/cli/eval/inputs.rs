@@ -102,6 +102,28 @@ fn a_weight_is_the_mean_of_two_files() {
         .fails(2, &["--slab-factor"]);
 }
 
+/// A factor on a part that the file lacks is told, and so is anisotropy that a model has not.
+#[test]
+fn options_that_change_nothing_are_told() {
+    let workshop = workshop();
+    let metal = |surface: &str| {
+        format!("schema = 1\nname = \"metal\"\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\n{surface}")
+    };
+    workshop.write("metal.toml", metal("alpha = 0.2\n"));
+    workshop.write("brushed.toml", metal("alpha_x = 0.1\nalpha_y = 0.4\n"));
+    let told = |file: &str, model: &str, more: &[&str]| {
+        let run = workshop.run(&[&["eval", file, "--model", model], &PAIR[..], more].concat()).exits(0);
+        run.stderr.lines().filter(|line| line.starts_with("note: ")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(told("metal.toml", "elek", &["--alpha-factor", "0.5"]), [""; 0]);
+    for (option, part) in [("--slab-factor", "no slab is below"), ("--film-factor", "no film is on")] {
+        let told = told("metal.toml", "elek", &[option, "0.5"]);
+        assert!(told.len() == 1 && told[0].contains(option) && told[0].contains(part), "{told:?}");
+    }
+    let told = ["elek", "yamaguchi"].map(|model| told("brushed.toml", model, &[]).join(" "));
+    assert!(told[0].contains("leaves out anisotropy of brushed.toml") && !told[1].contains("anisotropy"), "{told:?}");
+}
+
 /// None below 0, all above 1; the ends are the stack without and with its first layer.
 #[test]
 fn patina_grows_with_its_extent() {
