@@ -57,6 +57,10 @@ impl TomlFile {
     /// The text. Where bytes are not UTF-8, the error has the text with replacement characters, and a diagnostic at the first.
     pub(crate) fn text(self) -> Result<String, (String, Diagnostic)> {
         let label = self.label();
+        // The reader of TOML names this format.
+        if self.bytes.starts_with(b"glTF") {
+            return Ok(String::from_utf8_lossy(&self.bytes).into_owned());
+        }
         String::from_utf8(self.bytes).map_err(|source| not_utf8(label, &source))
     }
 }

@@ -40,6 +40,27 @@ fn texts_of_other_encodings_are_told() {
     }
 }
 
+/// One error for the file, whatever it holds.
+#[test]
+fn formats_that_import_reads_are_named() {
+    let workshop = Workshop::new();
+    for (file, bytes, words) in [
+        (
+            "x.gltf",
+            b"{\n  \"asset\": { \"version\": \"2.0\" },\n  \"materials\": [ { } ]\n}\n".to_vec(),
+            "this is JSON",
+        ),
+        ("x.mtlx", b"<?xml version=\"1.0\"?>\n<materialx version=\"1.39\"/>\n".to_vec(), "this is XML"),
+        ("x.glb", b"glTF\x02\0\0\0\xff\xfe\0\n".to_vec(), "this is binary glTF"),
+    ] {
+        std::fs::write(workshop.path(file), bytes).unwrap();
+        for verb in ["check", "bake"] {
+            let run = workshop.run(&[verb, file]).exits(1).says(&[words, "luthier import"]);
+            assert_eq!(run.stderr.matches("error: not TOML").count(), 1, "{}", run.stderr);
+        }
+    }
+}
+
 #[test]
 fn directions_of_a_spreadsheet_are_read() {
     let workshop = Workshop::with(&[("x.toml", &gold("x"))]);
