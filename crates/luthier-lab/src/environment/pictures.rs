@@ -23,7 +23,7 @@ pub(super) struct Point {
 impl Point {
     /// Angle between normal and eye.
     pub(super) fn theta_deg(&self) -> f64 {
-        self.normal.dot(self.wo).clamp(-1.0, 1.0).acos().to_degrees()
+        libm::acos(self.normal.dot(self.wo).clamp(-1.0, 1.0)).to_degrees()
     }
 }
 

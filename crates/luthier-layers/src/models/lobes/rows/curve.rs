@@ -6,7 +6,7 @@ use super::Row;
 use crate::least_squares::solve;
 use crate::models::lobes::{FirstInterface, Lobes};
 
-/// A reflectance as a polynomial of u, the cube of 1 less the cosine of a facet: `f + u (p + u (q + (1 - f - p - q) u))`. For indices of 1.2 to 2 this is within .003 of
+/// A reflectance as a polynomial of u, the cube of 1 less the cosine of a facet: `f + u (p + u (q + (1 - f - p - q) u))`. For indices of 1.2 to 1.9 this is within .003 of
 /// Fresnel's equations, where Schlick's form is within .03 to .11. It takes no root and no quotient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -127,14 +127,14 @@ mod tests {
     /// Oracle: Fresnel's equations.
     #[test]
     fn a_curve_is_near_to_fresnels() {
-        for (index, within) in [(1.2, 0.003), (1.5, 0.002), (2.0, 0.0035)] {
+        for (index, within) in [(1.2, 0.003), (1.5, 0.002), (1.9, 0.003)] {
             let curve = Curve::nearest(|cos_theta| fresnel_dielectric(index, cos_theta)).unwrap();
             for cos_theta in cosines() {
                 let (found, expected) = (curve.at(cos_theta), fresnel_dielectric(index, cos_theta));
                 assert!((found - expected).abs() < within, "{index} {cos_theta}: {found} {expected}");
             }
-            let f0 = ((index - 1.0) / (index + 1.0)).powi(2);
-            assert!((curve.at(0.0) - 1.0).abs() < 1e-12 && (curve.at(1.0) - f0).abs() < 1e-12);
+            let root = (index - 1.0) / (index + 1.0);
+            assert!((curve.at(0.0) - 1.0).abs() < 1e-12 && (curve.at(1.0) - root * root).abs() < 1e-12);
         }
     }
 
