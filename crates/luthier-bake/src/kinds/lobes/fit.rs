@@ -78,23 +78,27 @@ pub(super) struct Errors {
 }
 
 impl Errors {
-    /// Those of a search.
     fn of(varied: &Varied, judge: &Judge) -> Self {
-        let narrowed = varied.clone().of_one_width();
-        Self { whole: errors(varied, judge), of_one_width: narrowed.map(|varied| errors(&varied, judge)) }
+        Self { whole: errors(varied, judge), of_one_width: None }
+    }
+
+    /// With those of one width.
+    fn and_of_one_width(self, varied: &Varied, judge: &Judge) -> Self {
+        let of_one_width = varied.clone().of_one_width().map(|varied| errors(&varied, judge));
+        Self { of_one_width, ..self }
     }
 }
 
 impl Fit {
     fn new(varied: Varied, judge: &Judge) -> Self {
-        let own = Errors { whole: errors(&varied, judge), of_one_width: None };
-        Self { varied, own, curved: None, short: None }
+        Self { own: Errors::of(&varied, judge), varied, curved: None, short: None }
     }
 
     /// With the errors of the other forms that it has.
     fn in_all_forms(self, judge: &Judge) -> Self {
-        let own = Errors::of(&self.varied, judge);
-        let curved = self.varied.clone().of_curve().map(|varied| Errors::of(&varied, judge));
+        let own = self.own.and_of_one_width(&self.varied, judge);
+        let curved = self.varied.clone().of_curve();
+        let curved = curved.map(|varied| Errors::of(&varied, judge).and_of_one_width(&varied, judge));
         Self { own, curved, ..self }
     }
 

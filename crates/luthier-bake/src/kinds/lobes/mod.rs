@@ -115,7 +115,7 @@ pub(crate) fn decide(
         return Ok(None);
     }
     let have_one_width = fits.iter().all(|fits| fits.of(Some(1)).own.of_one_width.is_some());
-    // The same words of a material have rows over a factor, or of other layers.
+    // Rows over a factor, or of layers below a coat, leave a polynomial no place in the words of a material.
     let are_alone = materials.iter().filter_map(side).next().is_none() && of_model(materials).all(has_lone_rows);
     let is_curved = are_alone && fits.iter().all(|fits| fits.of(Some(0)).curved.is_some());
     let most = fits.iter().map(|fits| fits.most()).max().unwrap_or(0);
