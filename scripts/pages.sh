@@ -85,7 +85,7 @@ anisotropic() {
   luthier-lab anisotropic materials/{brushed-aluminium,papers/yamaguchi-brushed}.toml --random 6 --noise 0.015 -o docs/pages/anisotropic.md
 }
 environment() {
-  luthier-lab environment materials/papers/{silver-paint,latex,frosted-acrylic}.toml --size 12 --rows 128 --random 4 -o docs/pages/environment.md
+  luthier-lab environment materials/papers/{silver-paint,latex,frosted-acrylic}.toml --size 18 --rows 128 --random 2 -o docs/pages/environment.md
 }
 simulation() {
   luthier-lab simulation materials/papers/{yamaguchi-brushed,silver-paint}.toml --size 32 --samples 512 --time-size 16 \

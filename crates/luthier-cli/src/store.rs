@@ -53,14 +53,19 @@ pub(crate) fn configure(options: &StoreOptions) {
 /// [`Failure::Usage`] where the address of the shared store is none, or this build has no such stores. [`Failure::Files`] where the folder that was
 /// asked for cannot be used. A default folder that cannot be used causes a warning only.
 pub(crate) fn store() -> Outcome<&'static dyn Store> {
-    let near: &dyn Store = match opened()? {
-        Opened::Disk(store) => store,
-        Opened::Memory(store) => store,
-    };
+    let near = near()?;
     match OPTIONS.get() {
         Some(options) if !options.no_cache => shared_store::below(near, options.store.as_deref()),
         _ => Ok(near),
     }
+}
+
+/// [`store`] without the one that machines share: for results that are made as fast as they are fetched.
+pub(crate) fn near() -> Outcome<&'static dyn Store> {
+    Ok(match opened()? {
+        Opened::Disk(store) => store,
+        Opened::Memory(store) => store,
+    })
 }
 
 /// The store on disk, if there is one.

@@ -1,10 +1,11 @@
 //! The caller's choices for all materials of a bake.
 
+use luthier_bake::Store;
 use luthier_lut::TableKind;
 use luthier_manifest::{Form, Reflectance, ShadingModel};
 use luthier_material::{Diagnostic, Material, Severity};
 
-use crate::refusals::{of_energy, of_model};
+use crate::refusals::{of_kept_energy, of_model};
 
 /// Choices of models, reflectances, tables and forms that come before those of material files. The default leaves all to the files.
 ///
@@ -95,7 +96,7 @@ impl Shading {
     }
 
     /// A warning if the model gains or loses energy.
-    pub(crate) fn doubts_of_energy(&self, material: &Material) -> Option<Diagnostic> {
-        of_energy(material, self.model_of(material))
+    pub(crate) fn doubts_of_energy(&self, material: &Material, store: &dyn Store) -> Option<Diagnostic> {
+        of_kept_energy(material, self.model_of(material), store)
     }
 }

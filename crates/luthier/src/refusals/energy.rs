@@ -2,8 +2,10 @@
 //!
 //! Both are measured here, in f64, with the numbers of the file, as at white texels of its maps. Albedos of a model are sums over directions; albedos
 //! of the simulation ([`ColorPaths`]) are means over paths. Three wavelengths stand for the colour. Effects are left out. A material takes some
-//! hundredths of a second, one with energies of rough interfaces some tenths. `lobes` is not measured, because it is fitted to the simulation.
+//! hundredths of a second, one with energies of rough interfaces some tenths. `lobes` is not measured, because it is fitted to the simulation. Bakes keep
+//! what they found in their store.
 
+use luthier_bake::{Function, MemoryStore, Store, kept};
 use luthier_layers::directional_albedo::integral;
 use luthier_layers::effects::layer_sample::LayerSample;
 use luthier_layers::glam::DVec3;
@@ -94,6 +96,15 @@ impl Returned {
 /// # Ok::<(), luthier::Error>(())
 /// ```
 pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Diagnostic> {
+    of_kept_energy(material, asked, &MemoryStore::default())
+}
+
+/// [`of_energy`] with the albedos that a store has.
+pub(crate) fn of_kept_energy(
+    material: &Material,
+    asked: Option<ShadingModel>,
+    store: &dyn Store,
+) -> Option<Diagnostic> {
     let model = asked.unwrap_or_else(|| material.model());
     if !is_questionable(material, model) {
         return None;
@@ -101,11 +112,11 @@ pub fn of_energy(material: &Material, asked: Option<ShadingModel>) -> Option<Dia
     let stands_in = asked.is_none() && !material.unfit_for_lobes().is_empty();
     // Named models of stacks are known to be inexact (`docs/pages/models.md`), so they are simulated only for the words of a warning.
     let is_compared = stands_in || material.stack.layers.len() == 1;
-    let gains = !is_compared && albedos(material, model, false).iter().any(|found| found.model > ALL);
+    let gains = !is_compared && kept_albedos(material, model, false, store).iter().any(|found| found.model > ALL);
     if !is_compared && !gains {
         return None;
     }
-    let all = returned(material, model);
+    let all = kept_albedos(material, model, true, store);
     let most = all.iter().copied().max_by(|a, b| a.model.total_cmp(&b.model))?;
     let worst = all.iter().copied().max_by(|a, b| a.error().total_cmp(&b.error()))?;
     let name = model.name();
@@ -157,6 +168,23 @@ fn is_questionable(material: &Material, model: ShadingModel) -> bool {
 /// ```
 pub fn returned(material: &Material, model: ShadingModel) -> Vec<Returned> {
     albedos(material, model, true)
+}
+
+/// Albedos in stores: of the model, of the simulation, and at which angle.
+const ALBEDOS: Function = Function { kind: "energy", revision: 1 };
+
+/// [`albedos`], which a store keeps by all that they hang on.
+fn kept_albedos(material: &Material, model: ShadingModel, is_compared: bool, store: &dyn Store) -> Vec<Returned> {
+    let places = [index_of_engine(model), DIELECTRIC_INDEX].map(|index| places(material, model, index));
+    let stacks = (&material.stack, material.stack_of(model));
+    let simulation = is_compared.then_some((PATHS, SEED, POINTS));
+    let nm = material.bake.wavelengths_nm();
+    let inputs = format!("{:?}", (model, stacks, nm, places, parts_of(material, model), ANGLES_DEG, simulation));
+    let found = kept(ALBEDOS, &inputs.into(), store, || {
+        let found = albedos(material, model, is_compared).into_iter();
+        found.map(|Returned { model, simulated, angle_deg }| (model, simulated, angle_deg)).collect::<Vec<_>>()
+    });
+    found.into_iter().map(|(model, simulated, angle_deg)| Returned { model, simulated, angle_deg }).collect()
 }
 
 /// Albedos as [`returned`] has them, with or without the simulation.

@@ -10,6 +10,7 @@ mod parts;
 mod pictures;
 mod set;
 
+pub(crate) use energy::of_kept_energy;
 pub use energy::{Returned, of_energy, returned};
 pub use misses::{foreseen_misses, misses};
 pub use model::{of_domain, of_model};

@@ -11,6 +11,7 @@ mod surface_faults;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use luthier_bake::{MemoryStore, Store};
 use luthier_manifest::SurfaceEntry;
 use luthier_material::{Diagnostic, Material};
 use rayon::prelude::*;
@@ -125,20 +126,20 @@ impl Sources {
     }
 
     /// Adds warnings where a model returns too much light, or light that differs from a simulation. This takes some hundredths of a second for each
-    /// material. Call [`Sources::refuse`] first.
+    /// material whose albedos the store has not. Call [`Sources::refuse`] first.
     ///
     /// ```
-    /// use luthier::{Files, Shading, ShadingModel, Sources, TomlFile};
+    /// use luthier::{Files, MemoryStore, Shading, ShadingModel, Sources, TomlFile};
     /// # let text = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.3\n";
     /// # let file = TomlFile { path: "coat.toml".into(), bytes: text.as_bytes().to_vec() };
     ///
     /// let (mut sources, shading) = (Sources::of(Files::of(vec![file])), Shading { model: Some(ShadingModel::WeidlichWilkie), ..Shading::default() });
     /// sources.refuse(&shading);
-    /// sources.doubt_energy(&shading);
+    /// sources.doubt_energy(&shading, &MemoryStore::default());
     /// assert!(sources.diagnostics().any(|warning| warning.message.contains("times the light that falls in")));
     /// ```
-    pub fn doubt_energy(&mut self, shading: &Shading) {
-        add(&mut self.materials, |material| shading.doubts_of_energy(material).into_iter().collect());
+    pub fn doubt_energy(&mut self, shading: &Shading, store: &dyn Store) {
+        add(&mut self.materials, |material| shading.doubts_of_energy(material, store).into_iter().collect());
     }
 
     /// Adds every diagnostic that needs no bake: those of [`Sources::refuse`] and [`Sources::doubt_energy`], more tables than a texture holds, tables
@@ -158,7 +159,7 @@ impl Sources {
     /// ```
     pub fn check(&mut self, shading: &Shading) {
         self.refuse(shading);
-        self.doubt_energy(shading);
+        self.doubt_energy(shading, &MemoryStore::default());
         doubt_surfaces(&mut self.surfaces);
         refuse_too_many(&mut self.materials, shading);
         add(&mut self.materials, foreseen_misses);

@@ -18,7 +18,7 @@ use crate::cli::BakeOptions;
 use crate::interrupt::whole;
 use crate::materials::{refuse_environment, shows_environment, tell_misses, valid_surfaces};
 use crate::progress::{BakeProgress, event, published};
-use crate::store::store;
+use crate::store::{near, store};
 use crate::verb::check::diagnostics;
 
 /// A package whose files were read and are valid.
@@ -84,7 +84,7 @@ impl<'a> Begun<'a> {
         let mut sources = Sources::of(found);
         sources.put_first(lock.names());
         sources.refuse(&shading);
-        sources.doubt_energy(&shading);
+        sources.doubt_energy(&shading, near()?);
         let told = sources.materials.iter().flat_map(Source::diagnostics).cloned().collect();
         let surfaces = valid_surfaces(&sources.surfaces)?;
         let materials = shading.shaded(valid(sources.materials, options.quiet)?);

@@ -117,3 +117,26 @@ fn what_has_not_changed_is_not_judged_again() {
     assert_eq!(counts()[0], more + 2);
     assert_ne!(settings, changed);
 }
+
+/// A coat that returns more light than falls in, where a closed form lacks 1/n^2 below it.
+const BRIGHT: &str = "schema = 1\nname = \"coat\"\n[[layer]]\ntype = \"dielectric\"\nior = 1.5\nalpha = 0.1\n[[layer]]\ntype = \"conductor\"\nior = \"au\"\nalpha = 0.3\n";
+
+/// Albedos of a model, of which a bake warns, are kept by the stack: a new name computes none, and a new index does.
+#[test]
+fn albedos_of_models_are_kept() {
+    let workshop = Workshop::with(&[("coat.toml", BRIGHT)]);
+    let warned = || {
+        let run = workshop.run(&["bake", "coat.toml", "--model", "weidlich-wilkie", "--cache", "store"]).exits(0);
+        let warnings = run.stderr.lines().filter(|line| line.contains("times the light that falls in"));
+        warnings.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let first = warned();
+    assert_eq!(first.len(), 1, "{first:?}");
+    let kept = count(&workshop, "energy");
+    assert!(kept > 0);
+    workshop.edit("coat.toml", |text| text.replace("name = \"coat\"", "name = \"lacquer\""));
+    assert_eq!((warned(), count(&workshop, "energy")), (first.clone(), kept));
+    workshop.edit("coat.toml", |text| text.replace("ior = 1.5", "ior = 1.7"));
+    assert_ne!(warned(), first);
+    assert!(count(&workshop, "energy") > kept);
+}
