@@ -202,7 +202,7 @@ impl Lobes {
             (None, _) => Shaping::Rows,
         };
         let (wide, curve) = (Wide::new(record.falloff, axis), record.reflectance.map(Curve));
-        let frame = Frame { index: record.index, wide, axes, base, stretch: None, shaping, curve };
+        let frame = Frame { axes, base, shaping, curve, ..Frame::new(record.index, wide) };
         let tail = 1.0 / record.inverse_tails[0].max(1.0);
         let most = most_lobes(record);
         Self { tile, axis, frame, most, varying: record.varying, tail, family: None }

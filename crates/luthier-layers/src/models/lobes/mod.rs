@@ -146,6 +146,13 @@ pub struct Frame {
     pub curve: Option<Curve>,
 }
 
+impl Frame {
+    /// The frame of lobes in a medium beside a remainder, and of rows that have all else: in the plane of the eye, above no diffuse base.
+    pub fn new(index: f64, wide: Wide) -> Self {
+        Self { index, wide, axes: None, base: None, stretch: None, shaping: Shaping::Rows, curve: None }
+    }
+}
+
 /// A diffuse base below interfaces, which places may recolour.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -1,7 +1,7 @@
 //! First interfaces that reflect by polynomials, above rows of other forms than short lobes.
 
 use glam::DVec3;
-use luthier_layers::models::lobes::{Below, Critical, Frame, Lobe, Row, Shaping, ViewAxis, Wide};
+use luthier_layers::models::lobes::{Below, Critical, Frame, Lobe, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Axis, TableKind, WeightBits, bilinear};
 use luthier_manifest::LobesRecord;
 use luthier_optics::stack::Distribution;
@@ -66,15 +66,7 @@ fn a_polynomial_is_the_reflectance_of_the_first_interface() {
             });
             let lobes = lobe.into_iter().collect();
             let row = Row { albedo_dir: [0.9, 0.8, 0.7], lobes, wide: [r, g, b], base: None };
-            let frame = Frame {
-                index: 1.4f32.into(),
-                wide,
-                axes: None,
-                base: None,
-                stretch: None,
-                shaping: Shaping::Rows,
-                curve: None,
-            };
+            let frame = Frame::new(1.4f32.into(), wide);
             let below = Below::new(frame, row, eye).eval(light);
             let first = first_interface(alpha, light, eye);
             assert_light(&machine, [wi, wo], below.map(|below| below + first), "polynomial");

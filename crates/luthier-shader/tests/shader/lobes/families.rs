@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use luthier_layers::models::lobes::{
-    Below, Critical, Family, FilmLight, Frame, Mix, Paint, Painted, Row, Shaping, SlopeAxis, Slopes, ViewAxis, Wide,
+    Below, Critical, Family, FilmLight, Frame, Mix, Paint, Painted, Row, SlopeAxis, Slopes, ViewAxis, Wide,
 };
 use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
@@ -380,13 +380,8 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         };
         let axis = ViewAxis::new(2, Critical::default());
         let mut frame = Frame {
-            index: 1.4,
-            wide: Wide::new([0.6, 0.3], axis),
-            axes: None,
             base: Some(Painted { albedo: ALBEDO, is_lambertian: true }),
-            stretch: None,
-            shaping: Shaping::Rows,
-            curve: None,
+            ..Frame::new(1.4, Wide::new([0.6, 0.3], axis))
         };
         let mut brightest = 0.0_f64;
         for (k, (wi, wo)) in directions(160).enumerate() {

@@ -12,7 +12,7 @@ mod three_lobes;
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-use luthier_layers::models::lobes::{Axes, Below, Critical, Frame, Painted, Row, Shaping, ViewAxis, Wide};
+use luthier_layers::models::lobes::{Axes, Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Axis, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
     AxesRecord, FunctionGroup, LobesRecord, MapSlot, MaterialConstants, MaterialEntry, PaintedRecord, VaryingFactor,
@@ -142,20 +142,7 @@ fn light_from_below_is_that_of_the_twin() {
                 bilinear(&image, at, WeightBits::Exact)
             };
             let row = Row::of_parts(&(0..6).map(part).collect::<Vec<_>>(), false);
-            let expected = Below::new(
-                Frame {
-                    index: 1.4f32.into(),
-                    wide,
-                    axes: None,
-                    base: None,
-                    stretch: None,
-                    shaping: Shaping::Rows,
-                    curve: None,
-                },
-                row,
-                eye,
-            )
-            .eval(light);
+            let expected = Below::new(Frame::new(1.4f32.into(), wide), row, eye).eval(light);
             assert_light(&machine, [wi, wo], expected, name);
             brightest = expected.into_iter().fold(brightest, f64::max);
         }
@@ -200,15 +187,7 @@ fn rows_over_a_factor_are_those_of_the_twin() {
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
         record.integral = wide.integral();
         record.varying = Some(VaryingRecord { factor, tiles: 4, least_spread: 0.1, factors, family: None });
-        let frame = Frame {
-            index: record.index,
-            wide,
-            axes: None,
-            base: None,
-            stretch: None,
-            shaping: Shaping::Rows,
-            curve: None,
-        };
+        let frame = Frame::new(record.index, wide);
         let materials = [material];
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let machine = lit_from_below(&text, &materials, &image);
@@ -327,8 +306,7 @@ fn lobes_in_axes_are_those_of_the_twin() {
         let record = materials[number].constants.lobes.unwrap();
         let axes = record.axes.map(|AxesRecord { turn, is_mirrored, .. }| Axes { turn, is_mirrored });
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame =
-            Frame { index: record.index, wide, axes, base: None, stretch: None, shaping: Shaping::Rows, curve: None };
+        let frame = Frame { axes, ..Frame::new(record.index, wide) };
         let groups = if variance > 0.0 { &[FunctionGroup::Surface][..] } else { &[] };
         let set = MaterialSet {
             functions: groups.iter().copied().collect(),
@@ -382,13 +360,8 @@ fn values_of_a_place_change_lobes_as_in_the_twin() {
         let given = set(name).swap_remove(0);
         let record = given.constants.lobes.unwrap();
         let frame = Frame {
-            index: record.index,
-            wide: Wide::new(record.falloff, ViewAxis::new(2, Critical::default())),
-            axes: None,
             base: has_base.then_some(Painted { albedo: [0.3, 0.5, 0.7], is_lambertian }),
-            stretch: None,
-            shaping: Shaping::Rows,
-            curve: None,
+            ..Frame::new(record.index, Wide::new(record.falloff, ViewAxis::new(2, Critical::default())))
         };
         let painted = frame.base.map(|Painted { albedo, is_lambertian }| PaintedRecord {
             albedo,

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use luthier_layers::frame::local;
-use luthier_layers::models::lobes::{Below, Critical, Frame, Painted, Row, Shaping, ViewAxis, Wide};
+use luthier_layers::models::lobes::{Below, Critical, Frame, Painted, Row, ViewAxis, Wide};
 use luthier_lut::{WeightBits, bilinear};
 use luthier_manifest::{FunctionGroup, LobesRecord, MapSlot, PaintedRecord};
 use luthier_shader::{Form, MaterialSet, Target, emit};
@@ -27,15 +27,7 @@ fn own_normals_change_lobes_as_in_the_twin() {
         let record = given.constants.lobes.unwrap();
         let painted = Painted { albedo: [0.3, 0.5, 0.7], is_lambertian: false };
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame = Frame {
-            index: record.index,
-            wide,
-            axes: None,
-            base: Some(painted),
-            stretch: None,
-            shaping: Shaping::Rows,
-            curve: None,
-        };
+        let frame = Frame { base: Some(painted), ..Frame::new(record.index, wide) };
         let of_base = Some(PaintedRecord { albedo: painted.albedo, moments: None });
         given.constants.lobes = Some(LobesRecord { integral: wide.integral(), painted: of_base, ..record });
         given.constants.flakes = has_flakes.then_some(FLAKES);

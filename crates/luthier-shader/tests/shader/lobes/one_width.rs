@@ -1,7 +1,7 @@
 //! Rows with one lobe of one width.
 
 use glam::DVec3;
-use luthier_layers::models::lobes::{Below, Critical, Frame, Lobe, Row, Shaping, ViewAxis, Wide};
+use luthier_layers::models::lobes::{Below, Critical, Frame, Lobe, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Axis, TableKind, WeightBits, bilinear};
 use luthier_manifest::{FunctionGroup, LobesRecord};
 use luthier_shader::{Form, MaterialSet, Target, emit};
@@ -65,15 +65,7 @@ fn one_width_gives_the_other() {
             tail: 1.0 / INVERSE_TAIL,
         };
         let row = Row { albedo_dir: [0.9, 0.8, 0.7], lobes: vec![lobe], wide: [r, g, b], base: None };
-        let frame = Frame {
-            index: 1.4f32.into(),
-            wide,
-            axes: None,
-            base: None,
-            stretch: None,
-            shaping: Shaping::Rows,
-            curve: None,
-        };
+        let frame = Frame::new(1.4f32.into(), wide);
         let expected = Below::new(frame, row, eye).eval(light);
         assert_light(&machine, [wi, wo], expected, "one width");
         brightest = expected.into_iter().fold(brightest, f64::max);

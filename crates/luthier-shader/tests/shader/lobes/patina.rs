@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 use luthier_layers::formulas::oren_nayar;
-use luthier_layers::models::lobes::{Below, Critical, Frame, Row, Shaping, ViewAxis, Wide};
+use luthier_layers::models::lobes::{Below, Critical, Frame, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Image, TableKind, WeightBits, bilinear};
 use luthier_manifest::{
     FlakesRecord, LayerKind, LayerRecord, MaterialEntry, PatinaRecord, VaryingFactor, material_buffer,
@@ -44,15 +44,7 @@ fn patina_mixes_the_light_of_two_ends() {
         let given = materials[number].clone();
         let record = given.constants.lobes.unwrap();
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame = Frame {
-            index: record.index,
-            wide,
-            axes: None,
-            base: None,
-            stretch: None,
-            shaping: Shaping::Rows,
-            curve: None,
-        };
+        let frame = Frame::new(record.index, wide);
         let bare = given.constants.patina.map(|patina| patina.bare);
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let gray = Image { data: vec![GRAY; 36], ..Image::zeros(3, 3, 4) };
@@ -127,15 +119,7 @@ fn flakes_turn_the_lobes_that_patina_covers() {
             Some(FlakesRecord { seed: 1, count: 9, tiling: 1.0, spread: 0.1, scale: 1.0, fade_start: 1.0 });
         let record = constants.lobes.unwrap();
         let wide = Wide::new(record.falloff, ViewAxis::new(2, Critical::default()));
-        let frame = Frame {
-            index: record.index,
-            wide,
-            axes: None,
-            base: None,
-            stretch: None,
-            shaping: Shaping::Rows,
-            curve: None,
-        };
+        let frame = Frame::new(record.index, wide);
         let index = layers[0].eta;
         let text = emit(&MaterialSet::new(&materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap();
         let number = |structure: &str, name: &str| {

@@ -1,7 +1,7 @@
 //! Rows with one short lobe.
 
 use glam::DVec3;
-use luthier_layers::models::lobes::{Below, Critical, Frame, Lobe, Row, Shaping, ViewAxis, Wide};
+use luthier_layers::models::lobes::{Below, Critical, Frame, Lobe, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Axis, TableKind, WeightBits, bilinear};
 use luthier_manifest::{FunctionGroup, LobesRecord, ShortRecord};
 use luthier_optics::microfacet;
@@ -79,15 +79,7 @@ fn a_short_lobe_has_the_widths_of_the_view() {
             };
             let row = Row { albedo_dir: [0.9, 0.8, 0.7], lobes: vec![lobe], wide: [0.0; 3], base: None };
             let wide = Wide::new([0.0; 2], ViewAxis::new(2, Critical::default()));
-            let frame = Frame {
-                index: f64::from(INDEX as f32),
-                wide,
-                axes: None,
-                base: None,
-                stretch: None,
-                shaping: Shaping::Rows,
-                curve: None,
-            };
+            let frame = Frame::new(f64::from(INDEX as f32), wide);
             let below = Below::new(frame, row, eye).eval(light);
             let first = if is_closed { first_interface(coat.alpha, light, eye) } else { 0.0 };
             assert_light(&machine, [wi, wo], below.map(|below| below + first), "short");

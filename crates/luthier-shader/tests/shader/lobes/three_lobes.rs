@@ -1,7 +1,7 @@
 //! Rows with a third lobe behind the albedo.
 
 use glam::DVec3;
-use luthier_layers::models::lobes::{Below, Critical, Frame, Lobe, Row, Shaping, ViewAxis, Wide};
+use luthier_layers::models::lobes::{Below, Critical, Frame, Lobe, Row, ViewAxis, Wide};
 use luthier_lut::{AtlasLayout, Axis, Image, WeightBits, bilinear};
 use luthier_manifest::{FunctionGroup, LobesRecord};
 use luthier_shader::{Form, MaterialSet, Target, emit};
@@ -39,15 +39,7 @@ fn a_third_lobe_comes_after_the_albedo() {
     let (layout, image) = rows_of_three();
     let axis = ViewAxis::new(2, Critical::default());
     let wide = Wide::new([0.6, 0.3], axis);
-    let frame = Frame {
-        index: 1.4f32.into(),
-        wide,
-        axes: None,
-        base: None,
-        stretch: None,
-        shaping: Shaping::Rows,
-        curve: None,
-    };
+    let frame = Frame::new(1.4f32.into(), wide);
     let mut two = set("lobes")[0].clone();
     let record = two.constants.lobes.unwrap();
     let record = LobesRecord {

@@ -13,7 +13,7 @@ use crate::models::lobes::fit::{Found, indices, seen_from};
 use crate::models::lobes::half_vector::refracted;
 use crate::models::lobes::leaving::Leaving;
 use crate::models::lobes::{
-    BaseLight, FirstInterface, FitSettings, Frame, Lobes, Painted, Row, Shaping, ViewAxis, Wide, base_below, shown,
+    BaseLight, FirstInterface, FitSettings, Frame, Lobes, Painted, Row, ViewAxis, Wide, base_below, shown,
 };
 
 impl Family {
@@ -63,14 +63,9 @@ impl Family {
             nodes.push(Lobes {
                 first: first.clone(),
                 frame: Frame {
-                    index,
-                    wide: Wide::new(falloff, axis),
-                    axes: None,
                     // Rows have a shape of the remainder each, as above a diffuse base.
                     base: Some(Painted { albedo: own, is_lambertian: true }),
-                    stretch: None,
-                    shaping: Shaping::Rows,
-                    curve: None,
+                    ..Frame::new(index, Wide::new(falloff, axis))
                 },
                 axis,
                 rows,

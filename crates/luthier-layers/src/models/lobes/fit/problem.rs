@@ -12,7 +12,7 @@ use crate::models::lobes::ellipse::{Numbers, Plane};
 use crate::models::lobes::half_vector::{outside, refracted};
 use crate::models::lobes::parameters::{Basis, NODES, SHIFT, Term};
 use crate::models::lobes::tally::{Cells, Point, Tally, mean};
-use crate::models::lobes::{Axes, BaseLight, Frame, Lobe, Lobes, Row, Shape, Shaping, TAIL_MIN, ViewAxis, Wide};
+use crate::models::lobes::{Axes, BaseLight, Frame, Lobe, Lobes, Row, Shape, TAIL_MIN, ViewAxis, Wide};
 
 /// Shapes with less than this share above the horizon are penalised: energies are divided by the share.
 const SHARE_WANTED: f64 = 0.35;
@@ -252,15 +252,7 @@ impl<'a> Problem<'a> {
         };
         Lobes {
             first: first.clone(),
-            frame: Frame {
-                index,
-                wide,
-                axes: *axes,
-                base: self.simulation.base,
-                stretch: None,
-                shaping: Shaping::Rows,
-                curve: None,
-            },
+            frame: Frame { axes: *axes, base: self.simulation.base, ..Frame::new(index, wide) },
             axis: *axis,
             rows,
         }

@@ -731,15 +731,7 @@ mod tests {
             };
             Row { albedo_dir: [0.9; 3], lobes: vec![lobe], wide: [0.1; 3], base: None }
         };
-        let frame = Frame {
-            index: 1.5,
-            wide: Wide::new([0.2, 0.1], axis),
-            axes: None,
-            base: None,
-            stretch: None,
-            shaping: Shaping::Rows,
-            curve: None,
-        };
+        let frame = Frame::new(1.5, Wide::new([0.2, 0.1], axis));
         let given = Lobes { first: None, frame, axis, rows: (0..7).map(row).collect() };
         let narrowed = given.clone().of_one_width().unwrap();
         let Shaping::OneWidth(one_width) = narrowed.frame.shaping else { panic!("{:?}", narrowed.frame.shaping) };
