@@ -17,7 +17,7 @@
 //!
 //! - `error`, `json`, `grid`, `tile`: refusals, the text of keys, functions on grids, tiles.
 //! - `graph`: jobs, their results, and stores of these.
-//! - `options`, `settings`, `relief`, `plan`: data of a bake, from requests to jobs.
+//! - `form`, `options`, `settings`, `relief`, `plan`: data of a bake, from requests to jobs.
 //! - `candidates`: forms that a table may have, and the choice among them.
 //! - `kinds`: each kind of table, with its jobs and its candidates.
 //! - `records`, `veil`, `constants`, `maps`: the part of a material that is not in tables.
@@ -30,6 +30,7 @@ mod candidates;
 mod check;
 mod constants;
 mod error;
+mod form;
 pub mod goals;
 mod graph;
 mod grid;

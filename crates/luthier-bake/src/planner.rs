@@ -183,21 +183,8 @@ impl Part {
                 let Some(shape) = settings.shape(kind) else { continue };
                 let (fixed, record) = (settings.fixed(kind), &records[i]);
                 let (extras, interface) = (extras.get(i), &interface);
-                let lobes = kinds::lobes::most(material, settings);
-                let is_curved = settings.is_curved;
-                let site = Site {
-                    material,
-                    layer,
-                    extras,
-                    record,
-                    interface,
-                    color,
-                    shape,
-                    fixed,
-                    lobes,
-                    is_curved,
-                    read_image,
-                };
+                let lobes = kinds::lobes::form(material, settings);
+                let site = Site { material, layer, extras, record, interface, color, shape, fixed, lobes, read_image };
                 let Some(job) = kinds::of(kind).job(&site)? else { continue };
                 let place = format!("{}/{}{i}", material.name, bare.unwrap_or_default());
                 let name = kinds::of(kind).name(layer).map_or_else(|| place.clone(), str::to_owned);

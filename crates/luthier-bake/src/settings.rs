@@ -1,5 +1,6 @@
 //! One set of table settings for all materials of a bake.
 
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 
 use luthier_lut::{Axis, FormatSet, Mapping, RowBase, RowLayout, TableKind, TexelFormat};
@@ -7,6 +8,8 @@ use luthier_manifest::CandidateForm;
 use luthier_material::{BakeSettings, Material};
 
 use crate::BakeError;
+use crate::form::Form;
+use crate::graph::Key;
 
 /// Axes, format and base of the tiles of a kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,16 +83,14 @@ pub(crate) struct Settings {
     asked: [Asked; TableKind::ALL.len()],
     /// Formats that tables may have, see [`crate::Options::formats`].
     pub(crate) formats: FormatSet,
-    /// Most lobes, if a search decides them; without a search each material has as many as it needs.
-    pub(crate) lobes: Option<usize>,
-    /// Whether a search decided that first interfaces above lobes reflect by polynomials.
-    pub(crate) is_curved: bool,
+    /// Forms of rows of lobes by the keys of fits, if a search decides them, and none before it has.
+    pub(crate) lobes: Option<BTreeMap<Key, Form>>,
 }
 
 impl Settings {
     /// Settings with these shapes, until a search finds others.
     pub(crate) fn new(fixed: [Shape; TableKind::ALL.len()], asked: [Asked; TableKind::ALL.len()]) -> Self {
-        Self { shapes: fixed.clone().map(Some), fixed, asked, formats: FormatSet::CORE, lobes: None, is_curved: false }
+        Self { shapes: fixed.clone().map(Some), fixed, asked, formats: FormatSet::CORE, lobes: None }
     }
 
     /// The shape of the tables of a kind; none for kinds that shaders compute.

@@ -20,6 +20,7 @@ use luthier_optics::stack::Layer;
 
 use crate::BakeError;
 use crate::candidates::Found;
+use crate::form::Form;
 use crate::graph::{Job, Results};
 use crate::plan::Plan;
 use crate::relief::ImageReader;
@@ -37,10 +38,8 @@ pub(crate) struct Site<'a> {
     pub(crate) shape: &'a Shape,
     /// Shape of the tile without a search.
     pub(crate) fixed: &'a Shape,
-    /// Most lobes, if a search decides them.
-    pub(crate) lobes: Option<usize>,
-    /// Whether a search decided that first interfaces above lobes reflect by polynomials.
-    pub(crate) is_curved: bool,
+    /// Form of the rows of lobes.
+    pub(crate) lobes: Form,
     pub(crate) read_image: ImageReader<'a>,
 }
 

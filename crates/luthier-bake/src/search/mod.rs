@@ -6,7 +6,8 @@
 mod decisions;
 mod refusal;
 
-use luthier_layers::models::lobes::LOBES;
+use std::collections::BTreeMap;
+
 use luthier_lut::{AtlasLayout, TableKind};
 use luthier_manifest::{Budget, CandidateForm, Decision, Search};
 use luthier_material::Material;
@@ -60,7 +61,7 @@ impl Fixed {
         }
         let asked = budget(materials, &options.budget)?;
         let have_forms = materials.iter().any(|material| material.bake.lobes.is_some());
-        settings.lobes = (options.search && asked.limits_lobes() && !have_forms).then_some(LOBES);
+        settings.lobes = (options.search && asked.limits_lobes() && !have_forms).then(BTreeMap::new);
         settings.take_layout(lobes::layout(materials, options, &asked));
         let plan = planner::plan(materials, settings.clone(), read_image)?;
         Ok(Self { settings, plan, asked })

@@ -305,6 +305,16 @@ impl LobesRecord {
         [cos, sin, (f64::from(tiles) - 1.0) / if is_mirrored { 1.0 } else { 2.0 }]
     }
 
+    /// The number of lobes, with marks of the form of the rows.
+    fn form(&self) -> f32 {
+        let widths = match (self.rise, self.short) {
+            (None, _) => 0,
+            (Some(_), None) => ONE_WIDTH,
+            (Some(_), Some(_)) => SHORT,
+        };
+        (self.lobes + widths + self.reflectance.map_or(0, |_| CURVED)) as f32
+    }
+
     /// Numbers of the cosine inside, whose x is `(1 + k) (cos^2 - k / (1 + k))`: the squared cosine `k / (1 + k)` of the critical angle,
     /// `4 w^2 / (1 + k)^2`, and factor and offset for the root to be 0 at the horizon and 1 at the normal.
     fn inside(&self) -> [f64; 4] {
@@ -326,6 +336,11 @@ impl VaryingFactor {
 
 /// Added to the number of lobes in the words where a coat has a [`CoatRecord::side`].
 const OVER_SIDE: f32 = 4.0;
+
+/// Added to that number with a polynomial reflectance, with one width, and with a short lobe.
+const CURVED: u32 = 8;
+const ONE_WIDTH: u32 = 16;
+const SHORT: u32 = 32;
 
 /// Least factor on slopes if tiles are over no such factor.
 const SPREAD_MIN: f64 = 1e-3;
@@ -423,6 +438,9 @@ impl MaterialConstants {
         patina.as_mut().map(|patina| &mut patina.bare).or_else(|| coat.as_mut().map(|coat| &mut coat.bare))
     }
 
+    /// Number of the header word that is all 0 without flakes.
+    pub const FLAKES_WORD: usize = 4;
+
     /// `vec4` words of the constants in the material buffer.
     pub const WORDS: usize = 10;
 
@@ -436,7 +454,7 @@ impl MaterialConstants {
     /// | 4 | flakes: low and high 16 bits of the seed, cells, tiling; all 0 without flakes |
     /// | 5 | flakes: spread, scale, fade start; in w of a brightened base the share of the light of a diffuse base that comes back, else 0 |
     /// | 6 | patina: extent, transition, alpha of the base (-1: its own), 1; of a coat with a weight the weight, 0, -1, 2, and of a film with one in other models 3; of lobes over a diffuse base without either the albedo of that base RGB, -2 where rows have a and b, else -1, and of a family -3 |
-    /// | 7 | patina: diffuse albedo RGB; of such lobes, and of a family, the two integrals of [`PaintedRecord`], 0; without patina in z of a brightened base the share of a metal; in w the number of lobes, and 4 more where a coat has a weight and [`CoatRecord::side`] |
+    /// | 7 | patina: diffuse albedo RGB; of such lobes, and of a family, the two integrals of [`PaintedRecord`], 0; without patina in z of a brightened base the share of a metal; in w the number of lobes, 4 more where a coat has a weight and [`CoatRecord::side`], 8 more with a polynomial reflectance, and 16 more with one width or 32 with a short lobe |
     /// | 8 | patina: tarnish RGB, of lobes over patina tiles beyond the first; of a coat with a weight 1, 1, 1, the same number; of a family as word 1 for the coat, and the nodes over the base, below 0 where that is metallic nowhere |
     /// | 9 | glitter: low and high 16 bits of the seed, frequency, filled; all 0 without glitter |
     /// | 10 | 1 - cos tilt of glitter; of anisotropic lobes cosine and sine of the first axis, and tiles beyond the first in a quarter of a circle; of lobes over a film the share of the tiles per `film_factor`, that at 0, and -1; of a family 1 over the tail of its lobes, number of the base among the layers, the second of `sent_back`; of lobes with one tile 1 over the tail of each, 0; all 0 without |
@@ -453,7 +471,7 @@ impl MaterialConstants {
             words[0] = vec4(lobes.varying(), lobes.critical_plain_share);
             words[1] = lobes.inside().map(|x| x as f32);
             words[2] = vec4([(index - 1.0) * (index + 1.0), a, b], FRAC_1_PI / integral);
-            words[6][3] = lobes.lobes as f32;
+            words[6][3] = lobes.form();
             if let Some([f, p, q]) = lobes.reflectance {
                 // Such materials have no critical angle.
                 words[1] = [f, p, q, 1.0 - f - p - q].map(|x| x as f32);

@@ -9,7 +9,7 @@ const MARK: &str = "//?";
 /// The lines of a module whose conditions hold, without the marks.
 ///
 /// A mark `//? a, b|c, !d, ~e` keeps what follows if the set has `a`, has `b` or `c`, and lacks `d`, and if `e` holds for some of its materials and not for
-/// others. It governs a declaration, a member, a statement,
+/// others; `!~e` keeps it elsewhere. It governs a declaration, a member, a statement,
 /// or a block whose braces stand on lines of their own; these braces are removed. A mark `//? else` behind it governs what follows if the
 /// condition fails. Marks may be nested.
 ///
@@ -114,6 +114,7 @@ impl<'m> Module<'m> {
 fn holds(condition: &str, features: &Features) -> bool {
     condition.split(',').all(|alternatives| {
         alternatives.split('|').any(|word| match word.trim() {
+            word if word.starts_with("!~") => !features.are_mixed_in(named(&word[2..])),
             word if word.starts_with('!') => !features.has(named(&word[1..])),
             word if word.starts_with('~') => features.are_mixed_in(named(&word[1..])),
             word => features.has(named(word)),

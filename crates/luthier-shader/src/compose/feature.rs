@@ -169,11 +169,11 @@ luthier_lut::named! {
         Level = "level",
         /// No material of the set has more than one lobe.
         OneLobe = "one_lobe",
-        /// First interfaces above lobes reflect by polynomials.
+        /// A first interface above lobes reflects by a polynomial.
         LobesCurve = "lobes_curve",
-        /// Rows have one short lobe.
+        /// A material has a short lobe.
         LobesShort = "lobes_short",
-        /// Rows have one lobe of one width.
+        /// A material has one lobe of one width.
         LobesOneWidth = "lobes_one_width",
         /// Materials of the set have two lobes or more.
         TwoLobes = "two_lobes",

@@ -98,9 +98,10 @@ impl Features {
             names.extend(table_read(table.kind));
             if let (TableKind::Lobes, Some(parts)) = (table.kind, &table.layout.y) {
                 let sides: Vec<MaterialEntry> = set.materials.iter().filter_map(MaterialEntry::side).collect();
-                let lobes: Vec<u32> = set.materials.iter().chain(&sides).filter_map(lobes_of).collect();
+                let records: Vec<LobesRecord> = set.materials.iter().chain(&sides).filter_map(rows_of).collect();
+                let lobes: Vec<u32> = records.iter().map(|record| record.lobes).collect();
                 // Part 0 is the remainder, and the last part of at most two lobes the albedo. In between are two parts for each lobe, or one where it has one
-                // width. A short lobe has the first of these alone. A third lobe has two parts behind the albedo. Families have two lobes, whatever their parts.
+                // width in all rows. A short lobe has the first of these alone. A third lobe has two parts behind the albedo. Families have two lobes, whatever their parts.
                 let (words, most): (&[Feature], u32) = match parts.max as u32 {
                     _ if lobes.contains(&3) => (&[Feature::TwoLobes, Feature::ThreeLobes], 3),
                     _ if names.contains(&Feature::LobesFamily) => (&[Feature::TwoLobes], 2),
@@ -111,12 +112,15 @@ impl Features {
                     _ => (&[], 0),
                 };
                 names.extend(words);
-                if set
-                    .materials
-                    .iter()
-                    .any(|material| material.constants.lobes.is_some_and(|lobes| lobes.reflectance.is_some()))
-                {
-                    names.insert(Feature::LobesCurve);
+                let all = all.get_or_insert_default();
+                for (word, has) in FORMS {
+                    let is_common = words.contains(&word);
+                    if is_common || records.iter().any(has) {
+                        names.insert(word);
+                    }
+                    if is_common || records.iter().all(has) {
+                        all.insert(word);
+                    }
                 }
                 if lobes.iter().any(|lobes| *lobes < most) {
                     names.insert(Feature::LobesMixed);
@@ -520,11 +524,21 @@ fn of_model(material: &MaterialEntry) -> BTreeSet<Feature> {
     names
 }
 
-/// Number of lobes of a material whose rows are read.
-fn lobes_of(material: &MaterialEntry) -> Option<u32> {
+/// Numbers of the rows of a material, if it has any.
+fn rows_of(material: &MaterialEntry) -> Option<LobesRecord> {
     let has_rows = material.layers.first().is_some_and(|layer| layer.tiles[TableKind::Lobes].is_some());
-    Some(material.constants.lobes.filter(|_| has_rows)?.lobes)
+    material.constants.lobes.filter(|_| has_rows)
 }
+
+/// Whether rows are of a form.
+type Has = fn(&LobesRecord) -> bool;
+
+/// Words for forms of rows that are marked in the words of a material, where materials differ in them.
+const FORMS: [(Feature, Has); 3] = [
+    (Feature::LobesOneWidth, |record| record.rise.is_some()),
+    (Feature::LobesShort, |record| record.short.is_some()),
+    (Feature::LobesCurve, |record| record.reflectance.is_some()),
+];
 
 /// The word for what leaves the layers below the first bare in places.
 fn cover(material: &MaterialEntry) -> Feature {

@@ -98,6 +98,7 @@ mod tests {
             let named = names.iter().map(|name| numbered(&format!("$word_{name}")));
             assert_eq!(named.collect::<Vec<_>>(), numbers.collect::<Vec<_>>());
         }
+        assert_eq!(numbered("$word_flakes_grid"), format!("{}u", MaterialConstants::FLAKES_WORD));
     }
 
     #[test]

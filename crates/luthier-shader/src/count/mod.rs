@@ -125,7 +125,7 @@ pub struct Record<'a> {
 /// Counts of one evaluation of a WGSL text under some lights: `luthier_eval` for one, `luthier_prepare` and `luthier_light` for more. A text
 /// without these two counts `luthier_eval` for each light, less what the lights share. `wide` names the textures with more than 4 bytes a texel
 /// ([`MaterialSet::wide_textures`](crate::MaterialSet::wide_textures)). Of branches the dearer side counts. Where functions take a place, they count with all of it
-/// unknown but normals: at the place without textures a compiler would fold what textures decide.
+/// unknown but normals, those of flakes where a material is known that has none: at the place without textures a compiler would fold what textures decide.
 ///
 /// # Errors
 /// [`ShaderError::Invalid`] for invalid WGSL, and [`ShaderError::Uncounted`] for a text without these functions or with statements that no evaluation has.

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use luthier_manifest::{MATERIAL_WORDS, MaterialConstants};
 use naga::{
     AddressSpace, ArraySize, Block, Expression, Function, Handle, Literal, Module, ScalarKind, Statement, StructMember,
     SwitchValue, Type, TypeInner,
@@ -131,11 +132,23 @@ impl<'a> Walk<'a> {
 
     /// A member of a place: +z where it is a normal.
     fn unknown(&mut self, member: &StructMember) -> Result<Value, Reason> {
-        if member.name.as_deref() != Some("normal") {
+        let is_level = match member.name.as_deref() {
+            Some("normal") => true,
+            Some("flake_normal") => self.has_no_flakes(),
+            _ => false,
+        };
+        if !is_level {
             return self.of_inputs(member.ty);
         }
         let up = [0.0, 0.0, 1.0].map(|x: f32| Value::Scalar(self.graph.constant(Constant::float(x))));
         Ok(Value::Parts(up.to_vec()))
+    }
+
+    /// Whether a material is known, and has no flakes.
+    fn has_no_flakes(&self) -> bool {
+        let Sides::Of(on) = self.sides else { return false };
+        let word = on.material as usize * MATERIAL_WORDS + MaterialConstants::FLAKES_WORD;
+        on.words.get(word).is_some_and(|flakes| *flakes == [0.0; 4])
     }
 
     /// A value of a type, of which nothing is known but normals.

@@ -1,11 +1,13 @@
 //! Jobs that fit lobes.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use luthier_layers::models::lobes::{
     Cover, EXCESS, Family, FitError, FitSettings, Judge, LOBES, LOBES_MAX, SlopeAxis, Traced, Varied, Varying,
     most_lobes, most_searched, shown,
 };
+use luthier_lut::TableKind;
 use luthier_manifest::MapSlot;
 use luthier_material::Material;
 use luthier_optics::Rgb;
@@ -15,9 +17,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::rows::{FINE_ROWS, KEPT, ROWS, is_family, varying};
-use super::shape::{Form, Widths};
-use crate::graph::{Artefact, Inputs, Job, JobKind, Store, result_of};
+use crate::form::{Form, Widths};
+use crate::graph::{Artefact, Inputs, Job, JobKind, Key, Store, result_of};
 use crate::json;
+use crate::settings::Settings;
 
 /// Jobs that fit lobes.
 pub(crate) const FIT: JobKind = JobKind::part("fit");
@@ -32,6 +35,18 @@ pub(super) fn fit(material: &Material, is_searched: bool) -> Arc<FitJob> {
     // Measured in the usual medium: a lobe of another returns less light where the surface of one layer leans.
     let keeps_medium = !is_searched || material.layers.iter().any(|layer| layer.varies(MapSlot::Bumps));
     Arc::new(FitJob { stack, color, varying, is_searched, keeps_medium })
+}
+
+/// The form of the rows of a material, as a file or a search decides it. Where all rows have one width, those without a lobe have it, too.
+pub(crate) fn form(material: &Material, settings: &Settings) -> Form {
+    let found = |forms: &BTreeMap<Key, Form>| forms.get(&fit(material, true).key()).copied();
+    let searched = || settings.lobes.as_ref().map(|forms| found(forms).unwrap_or(Form::at_most(LOBES)));
+    let own = material.bake.lobes.map(Form::asked).or_else(searched).unwrap_or(Form::NEEDED);
+    let common = settings.shape(TableKind::Lobes).and_then(|shape| Some(Widths::in_parts(shape.y.as_ref()?)));
+    match common {
+        None | Some(Widths::Two) => own,
+        Some(widths) => Form { widths, ..own },
+    }
 }
 
 /// The stack of a family with the same numbers in place of all that its rows do not hang on: slope parameters that are axes, and colours in closed
@@ -63,8 +78,8 @@ pub fn fitted(stack: &Stack, color: &Color, varying: Option<Varying>, store: &dy
 pub(super) struct Fit {
     pub(super) varied: Varied,
     pub(super) own: Errors,
-    /// Errors with a [`Curve`](luthier_layers::models::lobes::Curve), of a search where the material has one.
-    pub(super) curved: Option<Errors>,
+    /// The lobes with a [`Curve`](luthier_layers::models::lobes::Curve) and their errors, of a search where the material has one.
+    pub(super) curved: Option<(Varied, Errors)>,
     /// A [short lobe](luthier_layers::models::lobes::Short) in place of one lobe with its errors, of a search where the material has one.
     pub(super) short: Option<(Varied, Vec<FitError>)>,
 }
@@ -98,13 +113,14 @@ impl Fit {
     fn in_all_forms(self, judge: &Judge) -> Self {
         let own = self.own.and_of_one_width(&self.varied, judge);
         let curved = self.varied.clone().of_curve();
-        let curved = curved.map(|varied| Errors::of(&varied, judge).and_of_one_width(&varied, judge));
+        let errors = |varied: &Varied| Errors::of(varied, judge).and_of_one_width(varied, judge);
+        let curved = curved.map(|varied| (varied.clone(), errors(&varied)));
         Self { own, curved, ..self }
     }
 
     /// The error with so many rows. More than a fit has show the same light.
-    pub(super) fn error(&self, Form { widths, is_curved }: Form, rows: usize) -> FitError {
-        let own = self.curved.as_ref().filter(|_| is_curved).unwrap_or(&self.own);
+    pub(super) fn error(&self, Form { widths, is_curved, .. }: Form, rows: usize) -> FitError {
+        let own = self.curved.as_ref().filter(|_| is_curved).map_or(&self.own, |(_, errors)| errors);
         let errors = match (widths, &own.of_one_width, &self.short) {
             (Widths::One, Some(errors), _) | (Widths::Short, _, Some((_, errors))) => errors,
             _ => &own.whole,
@@ -118,9 +134,9 @@ impl Fit {
     }
 
     /// The lobes, in this form if they have it.
-    pub(super) fn shaped(&self, Form { widths, is_curved }: Form) -> Varied {
-        let curved = if is_curved { self.varied.clone().of_curve() } else { None };
-        let whole = curved.unwrap_or_else(|| self.varied.clone());
+    pub(super) fn shaped(&self, Form { widths, is_curved, .. }: Form) -> Varied {
+        let curved = self.curved.as_ref().filter(|_| is_curved).map(|(varied, _)| varied);
+        let whole = curved.unwrap_or(&self.varied).clone();
         let other = match widths {
             Widths::Two => None,
             Widths::One => whole.clone().of_one_width(),
@@ -179,6 +195,16 @@ impl Fits {
     pub(super) fn of(&self, most: Option<usize>) -> &Fit {
         &self.0[most.unwrap_or(0).min(self.0.len() - 1)]
     }
+
+    /// The error in a form with so many rows.
+    pub(super) fn error(&self, form: Form, rows: usize) -> FitError {
+        self.of(form.most).error(form, rows)
+    }
+
+    /// The lobes in a form, where the material has it.
+    pub(super) fn shaped(&self, form: Form) -> Varied {
+        self.of(form.most).shaped(form)
+    }
 }
 
 /// The simulation of a stack, and the fits to it: [`Fits`].
@@ -211,7 +237,7 @@ impl Job for FitJob {
     }
 
     fn revision(&self) -> u32 {
-        if is_family(self.varying) { 17 } else { 13 }
+        if is_family(self.varying) { 17 } else { 14 }
     }
 
     fn inputs(&self) -> Value {

@@ -2,9 +2,10 @@
 //!
 //! # Rooms
 //!
-//! Each uses those before it: `rows`, `shape`, `fit`, `tile`, `record`.
+//! Each uses those before it: `rows`, `shape`, `fit`, `member`, `tile`, `record`.
 
 mod fit;
+mod member;
 mod record;
 mod rows;
 mod shape;
@@ -17,24 +18,26 @@ use luthier_lut::{AtlasLayout, RowLayout, TableKind};
 use luthier_manifest::{Budget, Candidate, CandidateForm, LobesForm, MeasuredError, Search};
 use luthier_material::Material;
 
-use self::fit::{FINE, FitJob, Fits, fit};
+use self::fit::{FINE, Fit, FitJob, Fits, fit};
+use self::member::{Choice, Member, Pick, measured, members};
 use self::rows::{FINE_ROWS, KEPT, of_model, side};
-use self::shape::{Form, HIDDEN_READS, Widths, parts, reads, shape_of, shape_with};
+use self::shape::{HIDDEN_READS, parts, reads, shape_of, shape_with};
 use self::tile::LobesJob;
 use super::{Kind, Site};
 use crate::BakeError;
 use crate::candidates::{self, Found, Refusal, choose, cost, locked};
-use crate::graph::{Graph, Job, Results};
+use crate::form::{Form, Widths};
+use crate::graph::{Graph, Job, Key, Results};
 use crate::options::Options;
 use crate::plan::Plan;
 use crate::settings::{Ask, Settings, Shape};
 use crate::tile::apron;
 
-pub(crate) use self::fit::FIT;
 pub use self::fit::fitted;
+pub(crate) use self::fit::{FIT, form};
 pub(crate) use self::record::record;
+pub(crate) use self::rows::has_rows;
 pub use self::rows::{VARIED_LAYERS_MAX, has_lone_rows, is_too_deep};
-pub(crate) use self::rows::{has_rows, most};
 pub(crate) use self::shape::layout;
 
 /// Lobes tables.
@@ -48,22 +51,21 @@ impl Kind for Table {
 
     /// A tile for the first layer, whose lobes contain the light of all layers below.
     fn job(&self, site: &Site<'_>) -> Result<Option<Arc<dyn Job>>, BakeError> {
-        let Site { material, layer, shape, .. } = site;
-        let is_first = material.stack.layers.first().is_some_and(|first| std::ptr::eq(first, *layer));
+        let Site { material, layer, shape, lobes: form, .. } = *site;
+        let is_first = material.stack.layers.first().is_some_and(|first| std::ptr::eq(first, layer));
         if !is_first {
             return Ok(None);
         }
-        let (fit, axes, format) = (fit(material, site.lobes.is_some()), shape.axes(), shape.format);
-        let is_curved = site.is_curved;
-        Ok(Some(Arc::new(LobesJob { fit, most: site.lobes, is_curved, tile: 0, axes, format })))
+        let fit = fit(material, form.most.is_some());
+        Ok(Some(Arc::new(LobesJob { fit, form, tile: 0, axes: shape.axes(), format: shape.format })))
     }
 
     /// Tiles for the other nodes over the varying factor, or over the azimuth.
     fn followers(&self, site: &Site<'_>) -> Vec<Arc<dyn Job>> {
-        let Site { material, shape, lobes: most, is_curved, .. } = *site;
-        let fit = fit(material, most.is_some());
-        let (tiles, format) = (1..Varied::tiles_of(&fit.stack, fit.varying_of(most)), shape.format);
-        let jobs = tiles.map(|tile| LobesJob { fit: fit.clone(), most, is_curved, tile, axes: shape.axes(), format });
+        let Site { material, shape, lobes: form, .. } = *site;
+        let fit = fit(material, form.most.is_some());
+        let (tiles, format) = (1..Varied::tiles_of(&fit.stack, fit.varying_of(form.most)), shape.format);
+        let jobs = tiles.map(|tile| LobesJob { fit: fit.clone(), form, tile, axes: shape.axes(), format });
         jobs.map(|job| Arc::new(job) as Arc<dyn Job>).collect()
     }
 }
@@ -77,9 +79,9 @@ pub(crate) fn fits(graph: &Graph) -> Option<Graph> {
     Some(graph.only(|job| job.kind() == FIT))
 }
 
-/// Decides the shape of the tiles, from the fits of a plan. Without limits on the errors of lobes, the tiles have as
+/// Decides the shape of the tiles and the form of each material, from the fits of a plan. Without limits on the errors of lobes, the tiles have as
 /// many parts as the material with the most lobes needs. With limits, the smallest shape that holds them is taken, and
-/// the search is reported. Families have fewer nodes where others have fewer lobes.
+/// the search is reported; then each material takes the form with the fewest reads that such tiles have. Families have fewer nodes where others have fewer lobes.
 ///
 /// # Errors
 /// [`Broken`] where no shape holds the limits.
@@ -91,9 +93,7 @@ pub(crate) fn decide(
     budget: &Budget,
     options: &Options<'_>,
 ) -> Result<Option<Search>, Broken> {
-    let fits: Vec<&Fits> = plan.graph.of::<FitJob>().filter_map(|job| results.get(job.key())).collect();
     let given = settings.fixed(TableKind::Lobes).format;
-    let are_short = fits.iter().all(|fits| fits.of(Some(1)).short.is_some()) && of_model(materials).all(has_lone_rows);
     // Few reads of textures hide behind arithmetic.
     let format_of = |reads: usize| {
         let hides = options.layout.is_none() && reads <= HIDDEN_READS;
@@ -102,72 +102,75 @@ pub(crate) fn decide(
     if settings.lobes.is_none() {
         // Materials of other models may ask for rows, too.
         let sides: Vec<Material> = materials.iter().filter_map(side).collect();
-        let lobes = materials.iter().chain(&sides).filter_map(|material| {
-            let most = most(material, settings);
-            Some(results.get::<Fits>(fit(material, most.is_some()).key())?.of(most).lobes())
+        let fits = materials.iter().chain(&sides).filter_map(|material| {
+            let form = form(material, settings);
+            let fits: &Fits = results.get(fit(material, form.most.is_some()).key())?;
+            Some((fits, form))
         });
-        let lobes = lobes.max().unwrap_or(0);
+        let fits: Vec<(&Fits, Form)> = fits.collect();
+        let lobes = fits.iter().map(|(fits, form)| fits.of(form.most).lobes()).max().unwrap_or(0);
+        let are_short = fits.iter().all(|(fits, _)| fits.of(Some(1)).short.is_some());
         let widths = match Widths::of(materials) {
-            Widths::Short if !are_short => Widths::Two,
+            Widths::Short if !are_short || !of_model(materials).all(has_lone_rows) => Widths::Two,
             widths => widths,
         };
         settings.take_lobes(shape_with(materials, widths, lobes, format_of(reads(lobes))));
         return Ok(None);
     }
-    let have_one_width = fits.iter().all(|fits| fits.of(Some(1)).own.of_one_width.is_some());
-    // Rows over a factor, or of layers below a coat, leave a polynomial no place in the words of a material.
-    let are_alone = materials.iter().filter_map(side).next().is_none() && of_model(materials).all(has_lone_rows);
-    let is_curved = are_alone && fits.iter().all(|fits| fits.of(Some(0)).curved.is_some());
-    let most = fits.iter().map(|fits| fits.most()).max().unwrap_or(0);
-    let others = [(have_one_width, Widths::One), (are_short, Widths::Short)];
+    let members = members(plan, materials, results);
+    let most = members.iter().map(|member| member.fits.most()).max().unwrap_or(0);
+    let others = [
+        (members.iter().all(Member::has_one_width), Widths::One),
+        (members.iter().all(Member::is_short), Widths::Short),
+    ];
     let steps = (0..=most.min(LOBES_MAX)).map(|most| (most, Widths::Two));
     let steps = steps.chain(others.into_iter().filter(|(are, _)| *are).map(|(_, widths)| (1, widths)));
-    let choices: Vec<(usize, Widths, usize)> = steps
+    let choices = steps
         .flat_map(|(most, widths)| KEPT.map(|rows| (most, widths, rows)))
-        .chain((most == FINE).then_some((FINE, Widths::Two, FINE_ROWS)))
-        .collect();
-    let shape_of = |(most, widths, rows): (usize, Widths, usize)| {
-        let lobes = lobes_of(&fits, most);
-        shape_of(widths, parts(materials, lobes), rows, format_of(widths.reads(lobes)))
+        .chain((most == FINE).then_some((FINE, Widths::Two, FINE_ROWS)));
+    let choices: Vec<Choice> = choices.collect();
+    // More lobes may be farther off, so that no form holds for all where each has one.
+    let has_most = |(own, widths, _): &&Choice| *own >= most.min(LOBES_MAX) && *widths == Widths::Two;
+    let of_each = choices.iter().filter(|_| members.len() > 1).filter(has_most).map(|choice| (*choice, true));
+    let picks: Vec<Pick> = choices.iter().map(|choice| (*choice, false)).chain(of_each).collect();
+    let formed = |member: &Member<'_>, (choice, is_own): Pick| {
+        if is_own { member.cheapest(choice, budget) } else { member.formed(choice, budget) }
     };
-    let candidates = choices.iter().map(|&(most, widths, rows)| {
-        let errors = fits.iter().map(|fits| fits.of(Some(most)).error(Form { widths, is_curved }, rows));
-        let error = errors.fold(FitError::default(), FitError::max);
-        let tiles = fits.iter().map(|fits| fits.of(Some(most)).varied.tiles() as u32).sum();
-        let Shape { x, y, base, format } = shape_of((most, widths, rows));
+    let candidate = |pick: Pick| {
+        let (forms, errors): (Vec<Form>, Vec<FitError>) = members.iter().map(|member| formed(member, pick)).unzip();
+        let fits = || members.iter().zip(&forms).map(|(member, form)| member.fits.of(form.most));
+        let lobes = fits().map(Fit::lobes).max().unwrap_or(0);
+        let tiles = fits().map(|fit| fit.varied.tiles() as u32).sum();
+        let (widths, (_, _, rows)) = (Widths::common(&forms), pick.0);
+        let shape = shape_of(widths, parts(materials, lobes), rows, format_of(widths.reads(lobes)));
+        let Shape { x, y, base, format } = shape.clone();
         let cost = cost::axis(&x) + y.as_ref().map_or(1.0, |y| f64::from(y.size)) * cost::read(format);
         let apron = apron(std::iter::once(&x).chain(&y));
         let layout = AtlasLayout { x: x.clone(), y: y.clone(), apron, columns: 1, tiles, base };
         let bytes = layout.size().map(u64::from).iter().product::<u64>() * u64::from(format.texel_bytes());
-        let form = CandidateForm::Table { x, y, format, base };
-        Candidate { form, bytes, cost, error: measured(error) }
-    });
-    let found = Found::new(TableKind::Lobes, 0.0, candidates.collect());
-    let found = std::slice::from_ref(&found);
-    let chosen = locked(found, options.locked, budget, 0).map_or_else(|| choose(found, budget, 0), Ok);
+        let error = measured(errors.into_iter().fold(FitError::default(), FitError::max));
+        (Candidate { form: CandidateForm::Table { x, y, format, base }, bytes, cost, error }, shape, forms)
+    };
+    let mut found = Found::new(TableKind::Lobes, 0.0, picks.iter().map(|pick| candidate(*pick).0).collect());
+    let one = std::slice::from_ref(&found);
+    let chosen = locked(one, options.locked, budget, 0).map_or_else(|| choose(one, budget, 0), Ok);
     let chosen = chosen.map_err(|refusal| {
-        let (most, widths, rows) = match &refusal {
-            Refusal::Error { nearest: (_, nearest), .. } => choices[*nearest],
-            Refusal::Whole { .. } => choices[0],
+        let pick = match &refusal {
+            Refusal::Error { nearest: (_, nearest), .. } => picks[*nearest],
+            Refusal::Whole { .. } => picks[0],
         };
+        let error_of = |key: Key| Some(formed(members.iter().find(|member| member.key == key)?, pick).1);
         let errors = materials.iter().enumerate().filter_map(|(number, material)| {
             let fits = [Some(fit(material, true)), side(material).map(|side| fit(&side, true))];
-            let fits = fits.into_iter().flatten().filter_map(|job| results.get::<Fits>(job.key()));
-            let errors = fits.map(|fits| fits.of(Some(most)).error(Form { widths, is_curved }, rows));
+            let errors = fits.into_iter().flatten().filter_map(|job| error_of(job.key()));
             Some((number, measured(errors.reduce(FitError::max)?)))
         });
         (refusal, errors.collect())
     })?[0];
-    (settings.lobes, settings.is_curved) = (Some(choices[chosen].0), is_curved);
-    settings.take_lobes(shape_of(choices[chosen]));
-    Ok(Some(candidates::report(&found[0], chosen, budget)))
-}
-
-/// The most lobes of any fit, if each has at most `most`.
-fn lobes_of(fits: &[&Fits], most: usize) -> usize {
-    fits.iter().map(|fits| fits.of(Some(most)).lobes()).max().unwrap_or(0)
-}
-
-fn measured(error: FitError) -> MeasuredError {
-    MeasuredError { lobe: Some(error.lobe), albedo: Some(error.albedo), ..MeasuredError::default() }
+    // Among rows that suffice for all, each material takes those that it needs.
+    let (taken, shape, forms) = candidate((picks[chosen].0, true));
+    found.candidates[chosen] = taken;
+    settings.take_lobes(shape);
+    settings.lobes = Some(members.iter().map(|member| member.key).zip(forms).collect());
+    Ok(Some(candidates::report(&found, chosen, budget)))
 }

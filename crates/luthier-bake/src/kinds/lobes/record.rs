@@ -10,9 +10,9 @@ use luthier_manifest::{
 };
 use luthier_material::Material;
 
-use super::fit::{Fits, fit};
-use super::rows::{has_base, is_family, most, varying};
-use super::shape::{Form, Widths};
+use super::fit::{Fits, fit, form};
+use super::rows::{has_base, is_family, varying};
+use crate::form::Widths;
 use crate::graph::{Job, Results};
 use crate::settings::Settings;
 
@@ -46,8 +46,8 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         is_mirrored,
         tiles: Axes::TILES as u32,
     });
-    let most = most(material, settings);
-    let fits = results.get::<Fits>(fit(material, most.is_some()).key());
+    let form = form(material, settings);
+    let fits = results.get::<Fits>(fit(material, form.most.is_some()).key());
     let Some((fits, shape)) = fits.zip(settings.shape(TableKind::Lobes)) else {
         let base = base_below(&material.stack).filter(|_| has_base(material) || is_family(varying(material)));
         let painted = base.map(|base| PaintedRecord { albedo: base.albedo, moments: None });
@@ -63,21 +63,17 @@ pub(crate) fn record(material: &Material, settings: &Settings, results: &Results
         });
         let unfitted = LobesRecord { axes, painted, varying, ..UNFITTED };
         return match material.bake.lobes {
-            Some(form) => {
-                let widths = Widths::of(std::slice::from_ref(material));
-                let rise = (widths != Widths::Two).then_some(0.0);
-                let short = (widths == Widths::Short).then_some(UNFITTED_SHORT);
+            Some(asked) => {
+                let rise = (form.widths != Widths::Two).then_some(0.0);
+                let short = (form.widths == Widths::Short).then_some(UNFITTED_SHORT);
                 let reflectance = short.map(|_| UNFITTED_CURVE);
-                LobesRecord { lobes: form.most() as u32, rise, short, reflectance, ..unfitted }
+                LobesRecord { lobes: asked.most() as u32, rise, short, reflectance, ..unfitted }
             }
             None => unfitted,
         };
     };
-    let fit = fits.of(most);
-    let widths = shape.y.as_ref().map_or(Widths::Two, Widths::in_parts);
-    let form = Form { widths, is_curved: settings.is_curved };
-    let varied = fit.shaped(form);
-    let FitError { lobe, lobe_noise, albedo, albedo_noise } = fit.error(form, shape.x.size as usize);
+    let varied = fits.shaped(form);
+    let FitError { lobe, lobe_noise, albedo, albedo_noise } = fits.error(form, shape.x.size as usize);
     let error = Some(LobesError { lobe, lobe_noise, albedo, albedo_noise });
     let lobes = &varied.nodes[0];
     let (wide, Critical { cot_sq, width, plain_share }) = (lobes.frame.wide, lobes.axis.critical());

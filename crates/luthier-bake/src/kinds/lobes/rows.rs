@@ -1,11 +1,9 @@
-//! Factors that rows of a material are over, and how many lobes they may have.
+//! Factors that rows of a material are over, and how many rows there are.
 
 use luthier_layers::models::lobes::{Cover, Family, FitSettings, Varied, Varying, base_below, shown};
-use luthier_manifest::{LobesForm, MapSlot};
+use luthier_manifest::MapSlot;
 use luthier_material::{Material, Patina};
 use luthier_optics::interface::Interface;
-
-use crate::settings::Settings;
 
 /// Rows of a fit.
 pub(super) const ROWS: usize = FitSettings::DEFAULT_ROWS;
@@ -76,11 +74,6 @@ pub fn is_too_deep(material: &Material) -> bool {
 /// Materials of the model.
 pub(super) fn of_model(materials: &[Material]) -> impl Iterator<Item = &Material> {
     materials.iter().filter(|material| material.model().is_fitted())
-}
-
-/// The most lobes of a material, where its form or a search decides; else it has as many as it needs.
-pub(crate) fn most(material: &Material, settings: &Settings) -> Option<usize> {
-    material.bake.lobes.map(LobesForm::most).or(settings.lobes)
 }
 
 /// Whether rows of a material contain the light of a diffuse base, as parts before the others. Families have parts of their own.

@@ -8,6 +8,7 @@ use luthier_manifest::{Budget, LobesForm};
 use luthier_material::Material;
 
 use super::rows::{ROWS, has_base, is_family, of_model, side, varying};
+use crate::form::{Form, Widths};
 use crate::options::Options;
 use crate::settings::{Shape, axis};
 
@@ -101,38 +102,11 @@ pub(super) fn shape_with(materials: &[Material], widths: Widths, lobes: usize, f
     shape_of(widths, parts(materials, lobes), common_rows(materials), format)
 }
 
-/// Form of the rows of a search, beside the number of lobes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Form {
-    /// Widths for each lobe.
-    pub(super) widths: Widths,
-    /// Whether the first interface reflects by a polynomial. A short lobe has one anyway.
-    pub(super) is_curved: bool,
-}
-
-/// Widths that rows have for a lobe.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Widths {
-    /// Two for each lobe.
-    Two,
-    /// One for a single lobe.
-    One,
-    /// None, for a short lobe.
-    Short,
-}
-
 impl Widths {
-    /// Widths that the forms of materials ask for.
+    /// Widths of all rows by the forms of files.
     pub(super) fn of(materials: &[Material]) -> Self {
-        let forms: Vec<Option<LobesForm>> = of_model(materials).map(|material| material.bake.lobes).collect();
-        let all = |has: fn(LobesForm) -> bool| forms.iter().all(|form| form.is_some_and(has));
-        match forms.as_slice() {
-            [] => Self::Two,
-            _ if all(|form| form == LobesForm::ShortLobe) => Self::Short,
-            _ if all(|form| form == LobesForm::NoLobe) => Self::Two,
-            _ if all(|form| matches!(form, LobesForm::OneWidth | LobesForm::NoLobe)) => Self::One,
-            _ => Self::Two,
-        }
+        let forms = of_model(materials).map(|material| material.bake.lobes.map_or(Form::NEEDED, Form::asked));
+        Self::common(&forms.collect::<Vec<_>>())
     }
 
     /// Widths of tiles with such parts.

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use luthier_layers::models::lobes::{Axes, Family, LOBES, LOBES_MAX, Row, Varying};
+use luthier_layers::models::lobes::{Axes, Family, LOBES, LOBES_MAX, Row, Shaping, Varying};
 use luthier_lut::{Axis, Comparison, ErrorStats, Image, Scan, TableKind, TexelFormat, WeightBits, measure_scan};
 use serde_json::{Value, json};
 
 use super::fit::{FitJob, Fits, factor_name, with_rows};
 use super::rows::is_family;
-use super::shape::{Form, Widths};
+use crate::form::{Form, Widths};
 use crate::graph::{Artefact, Inputs, Job, JobKind};
 use crate::json;
 use crate::tile::{TileData, color_in_words, lone_tile};
@@ -65,10 +65,8 @@ impl Parts {
 #[derive(Debug)]
 pub(super) struct LobesJob {
     pub(super) fit: Arc<FitJob>,
-    /// Most lobes, if a search decided them.
-    pub(super) most: Option<usize>,
-    /// Whether the first interface reflects by a polynomial.
-    pub(super) is_curved: bool,
+    /// Form of the rows.
+    pub(super) form: Form,
     /// Number of the tile, over the varying factor or over the azimuth.
     pub(super) tile: usize,
     /// Cosine of the view, and part.
@@ -88,8 +86,9 @@ impl Job for LobesJob {
     fn inputs(&self) -> Value {
         json!({
             "fit": self.fit.key().to_string(),
-            "most": self.most,
-            "is_curved": self.is_curved,
+            "most": self.form.most,
+            "widths": self.form.widths.name(),
+            "is_curved": self.form.is_curved,
             "tile": self.tile,
             "axes": self.axes.iter().map(json::axis).collect::<Vec<_>>(),
             "format": self.format.name(),
@@ -103,8 +102,7 @@ impl Job for LobesJob {
     fn run(&self, inputs: &Inputs<'_>) -> Artefact {
         let [x, y] = &self.axes;
         let fits: &Fits = inputs.part(self.fit.as_ref());
-        let form = Form { widths: Widths::in_parts(y), is_curved: self.is_curved };
-        let varied = with_rows(fits.of(self.most).shaped(form), x.size as usize);
+        let varied = with_rows(fits.shaped(self.form), x.size as usize);
         let (lobes, tile) = varied.tile(self.tile);
         let most = (y.max as usize + 1 - Row::parts(0)) / (Row::parts(1) - Row::parts(0));
         let layout = match (varied.varying(), Widths::in_parts(y)) {
@@ -123,7 +121,12 @@ impl Job for LobesJob {
         let mut truth = Image::zeros((x.size + 2) * y.size, 1, 4);
         for i in 0..x.size + 2 {
             let row = varied.stored(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
+            let width = row.lobes.first().map_or(0.0, |lobe| lobe.sharpness[0]);
             let mut parts = layout.of(row);
+            if let (Parts::Lobes(_, has_base), Shaping::OneWidth(_)) = (layout, lobes.frame.shaping) {
+                // A shader reads the width beside the remainder, as in rows that have no other.
+                parts[if has_base { Row::BASE_PARTS } else { 0 }][3] = width;
+            }
             if let (Some(Varying::Patina(_)), Some([.., free])) = (varied.varying(), parts.last_mut()) {
                 *free = varied.bare_facets(self.tile, (i.max(1) - 1).min(x.size - 1) as usize);
             }

@@ -116,7 +116,11 @@ fn luthier_curve_reflectance(numbers: vec4<f32>, cos_theta_d: f32) -> f32 {
 
 /// Reflectance of the first interface at the cosine of a facet.
 fn luthier_first_reflectance(prepared: LuthierPreparedLobes, cos_theta_d: f32) -> vec3<f32> {
-    //? lobes_curve
+    //? ~lobes_curve
+    if prepared.is_curved {
+        return vec3<f32>(luthier_curve_reflectance(prepared.reflectance, cos_theta_d));
+    }
+    //? lobes_curve, !~lobes_curve
     return vec3<f32>(luthier_curve_reflectance(prepared.reflectance, cos_theta_d));
     //? else
     return luthier_fresnel_term(prepared.coat, cos_theta_d);
@@ -143,7 +147,7 @@ fn luthier_light_curved(prepared: LuthierPreparedLobes, wi: vec3<f32>, sum: vec3
     return luthier_curve_reflectance(prepared.reflectance, 0.5 * length(sum)) * facets;
 }
 
-//? lobes_short
+//? lobes_short, !~lobes_short
 /// f cos_theta_i of a prepared material with a short lobe for light from wi, above the horizon.
 fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
     let wo = prepared.wo;
@@ -168,13 +172,13 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
     return prepared.first_strength * lobe + first;
 }
 
-//? !lobes_short
+//? !lobes_short|~lobes_short
 /// f cos_theta_i of a prepared material for light from wi, above the horizon.
 fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f32> {
     let wo = prepared.wo;
     let sum = vec3<f32>(wi.xy + wo.xy, max(wi.z + wo.z, 1e-16));
     // One facet of the first interface.
-    //? lobes_curve
+    //? lobes_curve, !~lobes_curve
     var value = vec3<f32>(luthier_light_curved(prepared, wi, sum, dot(sum.xy, sum.xy)));
     //? else
     {
@@ -182,9 +186,12 @@ fn luthier_light_lobes(prepared: LuthierPreparedLobes, wi: vec3<f32>) -> vec3<f3
         let masking = prepared.masking + luthier_slope_lambda(prepared.coat, luthier_coat_across_sq(prepared.coat, wi), wi.z);
         let facets = luthier_quarter_density(prepared.coat, sum) / (masking * wo.z);
         let cos_theta_d = min(0.5 * length(sum), 1.0);
+        //? ~lobes_curve
+        var value = luthier_first_reflectance(prepared, cos_theta_d) * facets;
+        //? else
         var value = luthier_fresnel_term(prepared.coat, cos_theta_d) * facets;
     }
-    //? lobes_patina, !lobes_curve
+    //? lobes_patina
     if prepared.cover < 1.0 {
         value = mix(luthier_light_bare(prepared, wi, sum, cos_theta_d), value, prepared.cover);
     }

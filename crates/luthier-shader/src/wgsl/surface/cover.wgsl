@@ -19,7 +19,7 @@ fn luthier_weighs_film(material: u32) -> bool {
 {
     /// Whether the layers that the coat or the film of a material leaves bare have lobes of their own.
     fn luthier_has_side(material: u32) -> bool {
-        return luthier_materials[luthier_header(material) + $word_patina_diffuse_albedo].w > 3.5;
+        return (u32(luthier_materials[luthier_header(material) + $word_patina_diffuse_albedo].w) & LUTHIER_OVER_SIDE) != 0u;
     }
 
     /// These layers, or those without the film on the first, as a material: their header lies behind the layers of the material and the bare one, which are

@@ -2,6 +2,7 @@
 
 mod curve;
 mod families;
+mod forms;
 mod normals;
 mod one_width;
 mod patina;
@@ -93,8 +94,13 @@ fn lit_from_below(text: &str, materials: &[MaterialEntry], rows: &Image) -> Mach
 }
 
 /// Light from below of the first material, in two steps: light and eye, and what they give.
-fn assert_light(machine: &Machine, [wi, wo]: [[f64; 3]; 2], expected: [f64; 3], name: &str) {
-    let prepared = machine.call("luthier_prepare_lobes", vec![Value::U(0), vector(&wo.map(|w| w as f32))]);
+fn assert_light(machine: &Machine, directions: [[f64; 3]; 2], expected: [f64; 3], name: &str) {
+    assert_light_of(0, machine, directions, expected, name);
+}
+
+/// [`assert_light`] for a material by number.
+fn assert_light_of(number: u32, machine: &Machine, [wi, wo]: [[f64; 3]; 2], expected: [f64; 3], name: &str) {
+    let prepared = machine.call("luthier_prepare_lobes", vec![Value::U(number), vector(&wo.map(|w| w as f32))]);
     let found = machine.call("luthier_light_lobes", vec![prepared, vector(&wi.map(|w| w as f32))]).floats();
     for (found, expected) in found.iter().zip(expected) {
         let error = (f64::from(*found) - expected).abs() / expected.abs().max(0.03);

@@ -716,14 +716,20 @@
         //? lobes_tilted
         {
             // Half vectors in the slab are shifted by the slope of the normal, those in another medium as much as the mirror direction is.
-            let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
-            let turned = luthier_slope_below(place, material) * (slab_cos / prepared.inside_cos);
-            let tilt = luthier_in_frame(prepared.azimuth, turned);
-            let disc = luthier_leaving_disc(prepared);
-            first_shape = luthier_lobe_about(first_shape, tilt, prepared.shares.x, disc);
-            second_shape = luthier_lobe_about(second_shape, tilt, prepared.shares.y, disc);
-            prepared.first_strength *= first_shape.gain;
-            prepared.second_strength *= second_shape.gain;
+            let turned = luthier_slope_below(place, material);
+            first_shape.gain = 1.0;
+            first_shape.left = 1.0;
+            second_shape.gain = 1.0;
+            second_shape.left = 1.0;
+            if turned.x != 0.0 || turned.y != 0.0 {
+                let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
+                let tilt = luthier_in_frame(prepared.azimuth, turned * (slab_cos / prepared.inside_cos));
+                let disc = luthier_leaving_disc(prepared);
+                first_shape = luthier_lobe_about(first_shape, tilt, prepared.shares.x, disc);
+                second_shape = luthier_lobe_about(second_shape, tilt, prepared.shares.y, disc);
+                prepared.first_strength *= first_shape.gain;
+                prepared.second_strength *= second_shape.gain;
+            }
         }
         prepared.first_shape = luthier_with_peak(first_shape);
         prepared.second_shape = luthier_with_peak(second_shape);

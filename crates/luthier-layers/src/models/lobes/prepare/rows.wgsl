@@ -9,8 +9,14 @@ const LUTHIER_LOBES: u32 = 2u;
 const LUTHIER_LOBES: u32 = 1u;
 //? else
 const LUTHIER_LOBES: u32 = 0u;
+/// Marks beside the number of lobes in the words of a material: layers below a coat have lobes of their own, a polynomial reflectance, one width, a short lobe.
+const LUTHIER_OVER_SIDE: u32 = 4u;
+const LUTHIER_CURVED: u32 = 8u;
+const LUTHIER_ONE_WIDTH: u32 = 16u;
+const LUTHIER_SHORT: u32 = 32u;
+
 /// The part of rows that is the albedo. A third lobe has the parts after it.
-//? lobes_one_width
+//? lobes_one_width, !~lobes_one_width
 const LUTHIER_LOBES_ALBEDO: f32 = 2.0;
 //? else
 const LUTHIER_LOBES_ALBEDO: f32 = f32(1u + 2u * min(LUTHIER_LOBES, 2u));
@@ -78,10 +84,13 @@ struct LuthierPreparedLobes {
     {
         /// Numbers of the reflectance of the first interface, see `luthier_curve_reflectance`.
         reflectance: vec4<f32>,
+        //? ~lobes_curve
+        /// Whether it has them.
+        is_curved: bool,
         /// Of a first interface of GGX: its squared slope parameter, 1 less that, and 2 pi times that square times a root of the cosine of the eye and times the cosine.
         coat_roots: vec4<f32>,
     }
-    //? lobes_short
+    //? lobes_short, !~lobes_short
     /// Numbers of the lobe as a quadratic form, see `luthier_light_lobes`.
     form: vec4<f32>,
     /// Share of the surface that the first interface covers.
@@ -350,6 +359,19 @@ fn luthier_over_base(given: LuthierPreparedLobes, $place_parameter material: u32
     return prepared;
 }
 
+//? ~lobes_one_width
+/// Sharpness along the plane of the eye and across it, and the decay, of a lobe of one width, which rows have, or of a short lobe.
+fn luthier_numbers_by_view(header: u32, form: u32, width: f32, sin_theta_sq: f32) -> vec3<f32> {
+    //? ~lobes_short
+    if (form & LUTHIER_SHORT) != 0u {
+        let widths = luthier_materials[header + $word_phong_specular];
+        let along = widths.x + sin_theta_sq * (widths.y + sin_theta_sq * widths.z);
+        return vec3<f32>(along, along * (1.0 + widths.w * sin_theta_sq), 1.0);
+    }
+    let sheet = luthier_materials[header + $word_glitter_tilt];
+    return vec3<f32>(width, width * (1.0 + sheet.z * sin_theta_sq), sheet.y);
+}
+
 //? !lobes_family|~lobes_family
 /// A material as seen from wo, above the horizon.
 fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> LuthierPreparedLobes {
@@ -461,7 +483,9 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         prepared.azimuth = across * inverse_sin;
         let tile = first_tile;
     }
-    //? lobes_short
+    //? lobes_mixed|~lobes_one_width|~lobes_curve
+    let form = u32(luthier_materials[header + $word_patina_diffuse_albedo].w);
+    //? lobes_short, !~lobes_short
     {
         let medium = luthier_materials[header + $word_veil];
         prepared.medium = vec4<f32>(medium.x, 0.0, 0.0, 1.0 / LUTHIER_PI);
@@ -472,8 +496,17 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         prepared.medium = luthier_materials[header + $word_veil];
         //? lobes_curve
         prepared.reflectance = luthier_materials[header + $word_phong_specular];
+        //? ~lobes_curve
+        prepared.is_curved = (form & LUTHIER_CURVED) != 0u;
+        //? ~lobes_short
+        if (form & LUTHIER_SHORT) != 0u {
+            // A short lobe has its widths there, and its reflectance in place of a remainder.
+            let curve = prepared.medium.yzw;
+            prepared.reflectance = vec4<f32>(curve, 1.0 - curve.x - curve.y - curve.z);
+            prepared.medium = vec4<f32>(prepared.medium.x, 0.0, 0.0, 1.0 / LUTHIER_PI);
+        }
     }
-    //? lobes_curve, !beckmann, !free_slopes
+    //? lobes_curve, !~lobes_curve, !beckmann, !free_slopes
     {
         let alpha_sq = 1.0 / prepared.coat.falloff;
         let left = 1.0 - alpha_sq;
@@ -485,14 +518,24 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? one_lobe|two_lobes
     {
         // Half vectors in the slab are shifted by the slope of the normal, those in another medium as much as the mirror direction is.
-        let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
-        let turned = luthier_slope_below(place, material) * (slab_cos / prepared.inside_cos);
-        let tilt = luthier_in_frame(prepared.azimuth, turned);
-        let disc = luthier_leaving_disc(prepared);
+        let turned = luthier_slope_below(place, material);
+        let is_tilted = turned.x != 0.0 || turned.y != 0.0;
+        var tilt = vec2<f32>(0.0);
+        var disc = vec3<f32>(0.0);
+        if is_tilted {
+            let slab_cos = sqrt(max(prepared.coat.eta * prepared.coat.eta - sin_theta_sq, 0.0));
+            tilt = luthier_in_frame(prepared.azimuth, turned * (slab_cos / prepared.inside_cos));
+            disc = luthier_leaving_disc(prepared);
+        }
     }
     //? critical_view
     {
         prepared.inside = luthier_materials[header + $word_phong_specular];
+        //? ~lobes_curve
+        if prepared.is_curved {
+            // No critical angle: the cosine itself.
+            prepared.inside = vec4<f32>(0.0, 0.0, 0.70710678, 0.0);
+        }
         // Rows are over a mean of it and of a cosine outside that is steeper at the horizon.
         let plain = wo.z * (1.25 / (wo.z + 0.25));
         let cos_theta = mix(luthier_inside_cosine(prepared.inside, wo.z), plain, luthier_materials[header + $word_phong_diffuse].w);
@@ -501,14 +544,24 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     let cos_theta = wo.z;
     prepared.row = vec2<f32>(tile, cos_theta);
     //? lobes_tints
+    prepared.tints = tints;
+    //? ~lobes_short
     {
-        prepared.tints = tints;
-        let wide = luthier_lookup_tinted(prepared.row, tints, 0.0);
+        var wide = vec4<f32>(0.0);
+        if (form & LUTHIER_SHORT) == 0u {
+            //? lobes_tints
+            wide = luthier_lookup_tinted(prepared.row, tints, 0.0);
+            //? else
+            wide = luthier_lookup_lobes(tile, cos_theta, 0.0);
+        }
     }
+    //? else
+    //? lobes_tints
+    let wide = luthier_lookup_tinted(prepared.row, tints, 0.0);
     //? else
     //? !lobes_short
     let wide = luthier_lookup_lobes(tile, cos_theta, 0.0);
-    //? lobes_short
+    //? lobes_short, !~lobes_short
     prepared.wide = vec3<f32>(0.0);
     //? else
     prepared.wide = wide.rgb;
@@ -552,14 +605,7 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         let unresolved = 0.0;
         //? lobes_mixed
         {
-            //? lobes_sides
-            {
-                // Where layers below a coat have lobes of their own, the number is 4 more.
-                let counted = luthier_materials[header + $word_patina_diffuse_albedo].w;
-                let lobes = select(counted, counted - 4.0, counted > 3.5);
-            }
-            //? else
-            let lobes = luthier_materials[header + $word_patina_diffuse_albedo].w;
+            let lobes = form & 3u;
             prepared.first_shape = luthier_dark_lobe();
             //? two_lobes
             prepared.second_shape = luthier_dark_lobe();
@@ -567,7 +613,7 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
             prepared.third_shape = luthier_dark_lobe();
         }
         //? lobes_mixed
-        if lobes < 0.5 {
+        if lobes == 0u {
             return prepared;
         }
         //? lobes_tints
@@ -577,6 +623,15 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         prepared.first_strength = first.rgb;
         //? two_lobes
         {
+            //? ~lobes_one_width
+            {
+                let has_own = (form & (LUTHIER_ONE_WIDTH | LUTHIER_SHORT)) == 0u;
+                var sharpness = vec4<f32>(0.0);
+                if has_own {
+                    sharpness = luthier_lookup_lobes(tile, cos_theta, 3.0);
+                }
+            }
+            //? else
             let sharpness = luthier_lookup_lobes(tile, cos_theta, 3.0);
             // Rows of one tile have one decay for each lobe.
             //? !lobes_axes, !lobes_film, !lobes_rows|~lobes_rows
@@ -593,9 +648,41 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
             let decays = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).xz;
             //? else
             let decays = sheet.yz;
+            //? ~lobes_one_width
+            {
+                var first_numbers = vec3<f32>(sharpness.xy, decays.x);
+                if !has_own {
+                    first_numbers = luthier_numbers_by_view(header, form, wide.a, sin_theta_sq);
+                }
+            }
+            //? else
             let first_numbers = vec3<f32>(sharpness.xy, decays.x);
             //? lobes_tilted
-            let shares = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).yw;
+            var shares = vec2<f32>(1.0);
+            //? lobes_tilted
+            if is_tilted {
+                shares = luthier_lookup_lobes(tile, cos_theta, LUTHIER_LOBES_SHARES).yw;
+            }
+        }
+        //? else
+        //? ~lobes_one_width
+        {
+            let has_own = (form & (LUTHIER_ONE_WIDTH | LUTHIER_SHORT)) == 0u;
+            var numbers = vec4<f32>(1.0);
+            //? lobes_tilted
+            if has_own || is_tilted {
+                numbers = luthier_lookup_lobes(tile, cos_theta, 2.0);
+            }
+            //? else
+            if has_own {
+                numbers = luthier_lookup_lobes(tile, cos_theta, 2.0);
+            }
+            var first_numbers = numbers.rgb;
+            if !has_own {
+                first_numbers = luthier_numbers_by_view(header, form, wide.a, sin_theta_sq);
+            }
+            //? lobes_tilted
+            let shares = numbers.aa;
         }
         //? else
         //? lobes_one_width
@@ -615,7 +702,11 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
                 let first_numbers = vec3<f32>(wide.a, wide.a * (1.0 + sheet.z * sin_theta_sq), sheet.y);
             }
             //? lobes_tilted
-            let shares = luthier_lookup_lobes(tile, cos_theta, 2.0).aa;
+            var shares = vec2<f32>(1.0);
+            //? lobes_tilted
+            if is_tilted {
+                shares = luthier_lookup_lobes(tile, cos_theta, 2.0).aa;
+            }
         }
         //? else
         //? lobes_tilted
@@ -643,7 +734,7 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
         }
         //? else
         prepared.first_shape = luthier_with_peak(first_shape);
-        //? lobes_short, !lobes_tilted
+        //? lobes_short, !~lobes_short, !lobes_tilted
         {
             let shape = prepared.first_shape;
             let squares = shape.sharpness * shape.sharpness;
@@ -654,7 +745,7 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? two_lobes
     {
         //? lobes_mixed
-        if lobes < 1.5 {
+        if lobes == 1u {
             return prepared;
         }
         //? lobes_tints
@@ -700,7 +791,7 @@ fn luthier_prepare_lobes($place_parameter material: u32, wo: vec3<f32>) -> Luthi
     //? three_lobes
     {
         //? lobes_mixed
-        if lobes < 2.5 {
+        if lobes == 2u {
             return prepared;
         }
         // Rows over the view alone have a third lobe: no channel has rows of its own, and lobes are in the plane of the eye.

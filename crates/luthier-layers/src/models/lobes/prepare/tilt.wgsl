@@ -42,6 +42,11 @@ fn luthier_lobe_leaving(shape: LuthierLobeShape, apart: vec2<f32>, radius: f32) 
 /// see `Below::tilted` of the f64 twin.
 fn luthier_lobe_about(given: LuthierLobeShape, slope: vec2<f32>, share: f32, disc: vec3<f32>) -> LuthierLobeShape {
     var shape = given;
+    shape.gain = 1.0;
+    shape.left = 1.0;
+    if slope.x == 0.0 && slope.y == 0.0 {
+        return shape;
+    }
     //? lobes_axes
     let moved = given.sharpness * slope + given.shear * slope.yx;
     //? else

@@ -46,10 +46,10 @@ impl OneWidth {
         Lobe { sharpness: [along; 2], tail: 1.0, ..lobe }
     }
 
-    /// The lobe that a stored one is at this view.
+    /// The lobe that a stored one is at this view. Among rows of two widths its width stands in the place of a shear, too.
     pub(super) fn shaped(self, stored: Lobe, sin_theta: f64) -> Lobe {
         let along = stored.sharpness[0] * self.inverse_tail.sqrt();
-        Lobe { sharpness: [along, along * self.factor(sin_theta)], tail: 1.0 / self.inverse_tail, ..stored }
+        Lobe { sharpness: [along, along * self.factor(sin_theta)], shear: 0.0, tail: 1.0 / self.inverse_tail, ..stored }
     }
 
     fn factor(self, sin_theta: f64) -> f64 {
