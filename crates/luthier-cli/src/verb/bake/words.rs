@@ -1,7 +1,7 @@
 //! The result of a bake in words, and as JSON.
 
 use luthier_export::MANIFEST;
-use luthier_manifest::{CandidateForm, LobesError, Manifest};
+use luthier_manifest::{CandidateForm, LobesError, LobesForm, LobesRecord, Manifest};
 use luthier_terminal::{bytes, counted};
 use serde_json::{Value, json};
 
@@ -45,13 +45,15 @@ pub(super) fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakePr
         let (kind, front, measured) = (search.kind.name(), search.front.len(), search.measured);
         out.push_str(&format!("{kind:<13} {what}; cost {:.0}; {front} on the front of {measured}\n", chosen.cost));
     }
-    let lobes = errors_of_lobes(manifest);
-    for (number, (name, LobesError { lobe, lobe_noise, albedo, albedo_noise })) in lobes.into_iter().enumerate() {
+    let lobes = fitted_lobes(manifest);
+    for (number, (name, record, error)) in lobes.into_iter().enumerate() {
+        let LobesError { lobe, lobe_noise, albedo, albedo_noise } = error;
         if number == 0 {
             out.push_str("\nlobes against the simulated stack, of unseen views the worst\n");
         }
         out.push_str(&format!(
-            "{name:<30} lobe error {lobe:.3}, of noise {lobe_noise:.3}; error of the albedo {albedo:.4}, standard error {albedo_noise:.4}\n"
+            "{name:<30} lobe error {lobe:.3}, of noise {lobe_noise:.3}; error of the albedo {albedo:.4}, standard error {albedo_noise:.4}; {}\n",
+            form_in_words(&record)
         ));
     }
     let jobs: Vec<String> = progress.seconds().iter().map(|(kind, s)| format!("{} {s:.2}", kind.name())).collect();
@@ -61,16 +63,26 @@ pub(super) fn text(options: &BakeOptions, manifest: &Manifest, progress: &BakePr
     out
 }
 
-/// Errors of the lobes of each material, and of what a weight leaves bare where that has lobes of its own.
-fn errors_of_lobes(manifest: &Manifest) -> Vec<(String, LobesError)> {
-    let errors = manifest.materials.iter().flat_map(|material| {
+/// The form of rows, and whether a polynomial is the reflectance of the first interface.
+fn form_in_words(record: &LobesRecord) -> String {
+    let form = LobesForm::of(record).map_or("rows over more than the view", LobesForm::words);
+    let reflectance = record.reflectance.map_or("", |_| ", polynomial reflectance");
+    format!("{form}{reflectance}")
+}
+
+/// The lobes of each material and their errors, and those of what a weight leaves bare where that has lobes of its own.
+fn fitted_lobes(manifest: &Manifest) -> Vec<(String, LobesRecord, LobesError)> {
+    let fitted = manifest.materials.iter().flat_map(|material| {
         let side = material.constants.coat.as_ref().and_then(|coat| coat.side);
         let where_bare = if side.is_some_and(|side| side.without_film) { "without its film" } else { "below the coat" };
-        let below = side.and_then(|side| Some((format!("{}, {where_bare}", material.name), side.lobes?.error?)));
-        let all = material.constants.lobes.and_then(|lobes| Some((material.name.clone(), lobes.error?)));
-        all.into_iter().chain(below)
+        let of = |name: String, lobes: Option<LobesRecord>| {
+            let record = lobes?;
+            Some((name, record, record.error?))
+        };
+        let below = of(format!("{}, {where_bare}", material.name), side.and_then(|side| side.lobes));
+        of(material.name.clone(), material.constants.lobes).into_iter().chain(below)
     });
-    errors.collect()
+    fitted.collect()
 }
 
 pub(super) fn summary(options: &BakeOptions, manifest: &Manifest, progress: &BakeProgress) -> Value {
@@ -89,10 +101,15 @@ pub(super) fn summary(options: &BakeOptions, manifest: &Manifest, progress: &Bak
             })
         })
         .collect();
-    let lobes: Vec<Value> = errors_of_lobes(manifest)
-        .into_iter()
-        .map(|(name, error)| json!({ "material": name, "error": error }))
-        .collect();
+    let lobes = fitted_lobes(manifest).into_iter().map(|(name, record, error)| {
+        json!({
+            "material": name,
+            "form": LobesForm::of(&record),
+            "is_polynomial": record.reflectance.is_some(),
+            "error": error,
+        })
+    });
+    let lobes: Vec<Value> = lobes.collect();
     let seconds: Value = progress.seconds().iter().map(|(kind, s)| (kind.name().to_owned(), json!(s))).collect();
     let phases: Value = progress.phases().iter().map(|(phase, s)| ((*phase).to_owned(), json!(s))).collect();
     json!({
