@@ -15,9 +15,9 @@ use luthier_optics::Rgb;
 use luthier_optics::film_over_f0::FilmOverF0;
 use luthier_optics::microfacet;
 use luthier_optics::schlick::{F82, edge_dip};
-use luthier_shader::{Form, MaterialSet, Target, emit};
+use luthier_shader::MaterialSet;
 
-use super::{set, tables_with};
+use super::{in_all_languages, set, tables_with};
 use crate::arithmetic::directions;
 use crate::machine::{Machine, Value, vector};
 
@@ -345,7 +345,7 @@ fn rows_of_a_family_are_those_of_the_formulas() {
         let (layout, image) = rows(family);
         let tables = tables_with(&layout);
         let set = MaterialSet { functions: groups.iter().copied().collect(), ..MaterialSet::new(&materials, tables) };
-        let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
+        let text = in_all_languages(&set);
         // A first interface that is a coat is black. Without one it has the nominal F0 at all angles, and so that of the place.
         let mut reflected = Image::zeros(3, 3, 4);
         let has_facets = !family.is_coated() && family.is_metallic;
@@ -511,7 +511,7 @@ fn an_anisotropic_base_alone_stretches_lobes() {
     let mut given = material(family);
     let text = |given: &MaterialEntry| {
         let materials = std::slice::from_ref(given);
-        emit(&MaterialSet::new(materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap()
+        in_all_languages(&MaterialSet::new(materials, tables_with(&layout)))
     };
     assert!(!text(&given).contains("luthier_family_stretched"));
     given.layers[1].alpha_xy = [0.9, 0.3];
@@ -527,7 +527,7 @@ fn colours_below_a_coat_are_a_place_of_their_own() {
     let mut given = material(family);
     let text = |given: &MaterialEntry| {
         let materials = std::slice::from_ref(given);
-        emit(&MaterialSet::new(materials, tables_with(&layout)), Form::Baked, Target::Wgsl).unwrap()
+        in_all_languages(&MaterialSet::new(materials, tables_with(&layout)))
     };
     given.maps.retain(|map| map.slot == MapSlot::Metallic);
     let below = text(&given);
@@ -546,7 +546,7 @@ fn directions_of_a_family_are_drawn_as_their_density_says() {
     let materials = [material(family)];
     let functions = [FunctionGroup::Sample, FunctionGroup::Albedo].into_iter().collect();
     let set = MaterialSet { functions, ..MaterialSet::new(&materials, tables_with(&layout)) };
-    let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
+    let text = in_all_languages(&set);
     let black = Image::zeros(3, 3, 3);
     let textures = [("luthier_fresnel", black.clone()), ("luthier_distribution", black), ("luthier_lobes", image)];
     let textures = BTreeMap::from(textures.map(|(name, image)| (name.to_owned(), image)));

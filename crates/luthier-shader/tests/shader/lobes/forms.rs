@@ -8,7 +8,7 @@ use luthier_optics::stack::Distribution;
 use luthier_shader::{Form, MaterialSet, Target, emit};
 
 use super::short::{REFLECTANCE, first_interface};
-use super::{assert_light_of, lit_from_below, set, tables_with};
+use super::{assert_light_of, in_all_languages, lit_from_below, set, tables_with};
 use crate::arithmetic::directions;
 use crate::machine::{Value, vector};
 use crate::scenes::tables;
@@ -169,7 +169,7 @@ fn materials_of_one_shader_have_forms_of_their_own() {
         } else {
             set.functions = [FunctionGroup::Light, FunctionGroup::Albedo, FunctionGroup::Sample].into_iter().collect();
         }
-        let text = emit(&set, Form::Baked, Target::Wgsl).unwrap();
+        let text = in_all_languages(&set);
         let machine = lit_from_below(&text, &materials, &image);
         let mut brightest = vec![[0.0_f64; 2]; forms.len()];
         for (wi, wo) in directions(100) {

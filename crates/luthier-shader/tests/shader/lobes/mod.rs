@@ -85,6 +85,14 @@ pub(crate) fn set(name: &str) -> Vec<MaterialEntry> {
     sets().into_iter().find(|(known, _)| *known == name).unwrap().1
 }
 
+/// The WGSL of a set, whose shader exists in every language.
+fn in_all_languages(set: &MaterialSet<'_>) -> String {
+    for target in Target::ALL.into_iter().filter(|target| *target != Target::SpirV) {
+        emit(set, Form::Baked, target).unwrap_or_else(|error| panic!("{}: {error}", target.name()));
+    }
+    emit(set, Form::Baked, Target::Wgsl).unwrap()
+}
+
 /// A shader of materials whose first facets are black, with rows of lobes.
 fn lit_from_below(text: &str, materials: &[MaterialEntry], rows: &Image) -> Machine {
     let black = Image::zeros(3, 3, 3);

@@ -152,8 +152,8 @@
         let d = near * far;
         let more = 1.0 + abs(d) + root;
         let less = (2.0 + 2.0 * root + near * near + far * far) / more;
-        let within = select(less, more, d > vec2<f32>(0.0));
-        let beyond = select(more, less, d > vec2<f32>(0.0));
+        let within = luthier_where_less(-d, 0.0, more, less);
+        let beyond = luthier_where_less(-d, 0.0, less, more);
         let sum = 1.0 + along * along + away * away + root;
         return max(along * across * within * (inverseSqrt(sum * (beyond + 2.0 * across * across)) * over_root), vec2<f32>(1e-3));
     }
@@ -172,8 +172,8 @@
         // Small sines by a series: the difference to 1 would be rounded off.
         let small_near = decay * near * near;
         let small_far = decay * far * far;
-        let near_sq = select(1.0 - near_cos * near_cos, small_near - 0.5 * small_near * (small_near + near * near), small_near < vec2<f32>(1e-3));
-        let far_sq = select(1.0 - far_cos * far_cos, small_far - 0.5 * small_far * (small_far + far * far), small_far < vec2<f32>(1e-3));
+        let near_sq = luthier_where_less(small_near, 1e-3, small_near - 0.5 * small_near * (small_near + near * near), 1.0 - near_cos * near_cos);
+        let far_sq = luthier_where_less(small_far, 1e-3, small_far - 0.5 * small_far * (small_far + far * far), 1.0 - far_cos * far_cos);
         let sines = sign(near) * sign(far) * sqrt(max(near_sq * far_sq, vec2<f32>(0.0)));
         return max(0.5 - 0.5 * (near_cos * far_cos - sines), vec2<f32>(1e-3));
     }

@@ -4,6 +4,12 @@ fn luthier_leaving_disc(prepared: LuthierPreparedLobes) -> vec3<f32> {
     return vec3<f32>(luthier_in_frame(prepared.azimuth, prepared.wo.xy) * radius, radius);
 }
 
+//? lobes_family
+/// The first of two values where a number is less than a limit, and else the second, by component: languages differ in conditions of several numbers.
+fn luthier_where_less(numbers: vec2<f32>, limit: f32, value: vec2<f32>, other: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(select(other.x, value.x, numbers.x < limit), select(other.y, value.y, numbers.y < limit));
+}
+
 //? lobes_tilted|lobes_family
 /// Share of a shape above the horizon, as an estimate, where its middle is so far from that of the disc: see `Leaving` of the f64 twin.
 fn luthier_lobe_leaving(shape: LuthierLobeShape, apart: vec2<f32>, radius: f32) -> f32 {
@@ -27,7 +33,7 @@ fn luthier_lobe_leaving(shape: LuthierLobeShape, apart: vec2<f32>, radius: f32) 
     {
         // Small sines by a series: the difference to 1 would be rounded off.
         let small = shape.decay * edges * edges;
-        let squares = select(1.0 - cosines * cosines, small - 0.5 * small * (small + edges * edges), small < vec2<f32>(1e-3));
+        let squares = luthier_where_less(small, 1e-3, small - 0.5 * small * (small + edges * edges), 1.0 - cosines * cosines);
         let sines = sqrt(max(squares, vec2<f32>(0.0)));
     }
     //? else
