@@ -91,6 +91,11 @@ fn lobes_are_as_small_as_their_budget_allows() {
             limits.iter().any(|l| l["quantity"] == "lobes: largest lobe error" && l["found"] == error["lobe"]),
             "{limits:?}"
         );
+        // A fit without limits has other lobes and the same albedo.
+        let tables = report["tables"].as_array().unwrap();
+        let rows = tables.iter().find(|table| table["kind"] == "lobes").unwrap();
+        let found = rows["tiles"][0]["judge"]["max_abs_err"].as_f64().unwrap();
+        assert!(found <= 1.5 * error["albedo"].as_f64().unwrap() + 2e-3, "{rows} {error}");
     }
     assert!(bytes[0] <= bytes[1] && bytes[1] < bytes[2], "{bytes:?}");
     workshop.write("a.toml", plain.clone());

@@ -15,7 +15,8 @@ use crate::measure::table_terms::{TableTerms, Weights, most_lobes};
 const POINTS_PER_CELL: u32 = 4;
 
 /// Compares the energies of rows of lobes (albedo, wide remainder, light of a diffuse base in it, each lobe) with those of a new simulation and fit
-/// of the stack, over the cosine of the view. The judgement of models, not this scan, compares the fit with the simulation.
+/// of the stack, over the cosine of the view. Where a limit has taken another form, the parts of its light are others, and the albedo alone is compared. The judgement of
+/// models, not this scan, compares the fit with the simulation.
 pub(super) fn scan(
     table: &Table<'_>,
     tile: u32,
@@ -35,6 +36,10 @@ pub(super) fn scan(
     let of_family = entry.constants.lobes.and_then(|lobes| lobes.family());
     let most = entry.constants.lobes.as_ref().map_or(LOBES, most_lobes);
     let painted = of_family.map(|_| TableTerms::new(subject, material, Weights::EightBit)).transpose().ok()?;
+    let is_of_fit = entry.constants.lobes.is_none_or(|record| {
+        let is_like = record.lobes as usize == lobes.rows[0].lobes.len() && record.index == lobes.frame.index;
+        of_family.is_some() || is_like && record.rise.is_none() && record.reflectance.is_none()
+    });
     for u in coordinates(x, POINTS_PER_CELL) {
         let c = x.decode(u);
         let (number, sampled) = match &painted {
@@ -47,7 +52,8 @@ pub(super) fn scan(
         };
         let expected = lobes.row_of(number, c).energies();
         // An atlas has as many lobes as its richest row. Lobes beyond a stack's own have no light.
-        for part in 0..expected.len().max(sampled.len()) {
+        let parts = if is_of_fit { expected.len().max(sampled.len()) } else { 1 };
+        for part in 0..parts {
             let [expected, sampled] = [&expected, &sampled].map(|row| row.get(part).copied().unwrap_or_default());
             for channel in 0..3 {
                 scan.add(&[c, part as f64], channel, expected[channel], sampled[channel]);
