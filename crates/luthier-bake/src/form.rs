@@ -4,7 +4,7 @@ use luthier_manifest::LobesForm;
 
 /// Form of the rows of a material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Form {
+pub(crate) struct RowForm {
     /// Most lobes, if a file or a search decides them; else a material has as many as it needs.
     pub(crate) most: Option<usize>,
     /// Widths for each lobe.
@@ -13,7 +13,7 @@ pub(crate) struct Form {
     pub(crate) is_curved: bool,
 }
 
-impl Form {
+impl RowForm {
     /// As many lobes as a material needs.
     pub(crate) const NEEDED: Self = Self { most: None, widths: Widths::Two, is_curved: false };
 
@@ -46,8 +46,8 @@ pub(crate) enum Widths {
 
 impl Widths {
     /// Widths of all rows where forms have the same; where they differ, rows have places for two. A form without a lobe has any but a short one's.
-    pub(crate) fn common(forms: &[Form]) -> Self {
-        let all = |has: fn(&Form) -> bool| forms.iter().all(has);
+    pub(crate) fn common(forms: &[RowForm]) -> Self {
+        let all = |has: fn(&RowForm) -> bool| forms.iter().all(has);
         match forms {
             [] => Self::Two,
             _ if all(|form| form.widths == Self::Short) => Self::Short,

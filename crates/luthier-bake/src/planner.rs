@@ -8,6 +8,7 @@ use luthier_optics::interface::Interface;
 use luthier_optics::stack::Stack;
 use rayon::prelude::*;
 
+use crate::form::RowForm;
 use crate::graph::{Graph, Key};
 use crate::kinds::{self, Site};
 use crate::plan::{Plan, PlannedLayers};
@@ -183,7 +184,9 @@ impl Part {
                 let Some(shape) = settings.shape(kind) else { continue };
                 let (fixed, record) = (settings.fixed(kind), &records[i]);
                 let (extras, interface) = (extras.get(i), &interface);
-                let lobes = kinds::lobes::form(material, settings);
+                // The key of a fit takes a while.
+                let has_form = kind == TableKind::Lobes;
+                let lobes = if has_form { kinds::lobes::form(material, settings) } else { RowForm::NEEDED };
                 let site = Site { material, layer, extras, record, interface, color, shape, fixed, lobes, read_image };
                 let Some(job) = kinds::of(kind).job(&site)? else { continue };
                 let place = format!("{}/{}{i}", material.name, bare.unwrap_or_default());

@@ -8,7 +8,7 @@ use luthier_manifest::CandidateForm;
 use luthier_material::{BakeSettings, Material};
 
 use crate::BakeError;
-use crate::form::Form;
+use crate::form::RowForm;
 use crate::graph::Key;
 
 /// Axes, format and base of the tiles of a kind.
@@ -84,7 +84,7 @@ pub(crate) struct Settings {
     /// Formats that tables may have, see [`crate::Options::formats`].
     pub(crate) formats: FormatSet,
     /// Forms of rows of lobes by the keys of fits, if a search decides them, and none before it has.
-    pub(crate) lobes: Option<BTreeMap<Key, Form>>,
+    pub(crate) lobes: Option<BTreeMap<Key, RowForm>>,
 }
 
 impl Settings {

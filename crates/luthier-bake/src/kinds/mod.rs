@@ -20,7 +20,7 @@ use luthier_optics::stack::Layer;
 
 use crate::BakeError;
 use crate::candidates::Found;
-use crate::form::Form;
+use crate::form::RowForm;
 use crate::graph::{Job, Results};
 use crate::plan::Plan;
 use crate::relief::ImageReader;
@@ -39,7 +39,7 @@ pub(crate) struct Site<'a> {
     /// Shape of the tile without a search.
     pub(crate) fixed: &'a Shape,
     /// Form of the rows of lobes.
-    pub(crate) lobes: Form,
+    pub(crate) lobes: RowForm,
     pub(crate) read_image: ImageReader<'a>,
 }
 

@@ -1,5 +1,7 @@
 //! Counts of small texts, by hand.
 
+use luthier_manifest::{MATERIAL_WORDS, MaterialConstants};
+
 use super::*;
 
 /// A module whose evaluation has these statements, with a texture, a sampler and two buffers.
@@ -161,18 +163,26 @@ fn sides_are_those_that_are_asked_for() {
     assert!(matches!(of(Sides::Of(Record { words: &words[..1], material: 1 })), Err(ShaderError::Uncounted(_))));
 }
 
-/// A text that takes a place is counted with what textures decide unknown: only normals are those of the surface.
+/// A text that takes a place is counted with what textures decide unknown: only normals are those of the surface, and those of flakes where a material has none.
 #[test]
 fn places_are_not_known() {
-    let of = |body: &str| {
+    let of_sides = |body: &str, sides: Sides<'_>| {
         let at = format!(
-            "struct LuthierPlace {{ normal: vec3<f32>, factor: f32, layers: array<f32, 2>, }}\n\
+            "struct LuthierPlace {{ normal: vec3<f32>, factor: f32, layers: array<f32, 2>, flake_normal: vec3<f32>, }}\n\
              fn luthier_eval_at(place: LuthierPlace, material: u32, wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32> {{\n{body}\n}}\n\
-             fn luthier_place() -> LuthierPlace {{ return LuthierPlace(vec3<f32>(0.0, 0.0, 1.0), 1.0, array<f32, 2>(1.0, 1.0)); }}\n"
+             fn luthier_place() -> LuthierPlace {{\n\
+                 return LuthierPlace(vec3<f32>(0.0, 0.0, 1.0), 1.0, array<f32, 2>(1.0, 1.0), vec3<f32>(0.0, 0.0, 1.0));\n}}\n"
         );
         let eval = module_of("return luthier_eval_at(luthier_place(), material, wi, wo);");
-        count(&(at + &eval), &[], 1).unwrap()
+        count_sides(&(at + &eval), &[], 1, sides).unwrap()
     };
+    let of = |body: &str| of_sides(body, Sides::Dearer);
+    let tilted = "if place.flake_normal.x != 0.0 { return wi * sqrt(place.flake_normal.x); }\nreturn wi;";
+    assert_eq!(of(tilted).special, 1);
+    let mut words = [[0.0; 4]; MATERIAL_WORDS];
+    assert_eq!(of_sides(tilted, Sides::Of(Record { words: &words, material: 0 })).special, 0);
+    words[MaterialConstants::FLAKES_WORD] = [0.0, 0.0, 1.0, 0.0];
+    assert_eq!(of_sides(tilted, Sides::Of(Record { words: &words, material: 0 })).special, 1);
     assert_eq!(of("return wi * place.factor;"), StaticCounts { plain: 3, ..NONE });
     assert_eq!(of("return wi * (place.layers[0] * place.layers[1]);"), StaticCounts { plain: 4, ..NONE });
     assert_eq!(of("return vec3<f32>(place.normal.z / 2.0);"), NONE);

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::rows::{FINE_ROWS, KEPT, ROWS, is_family, varying};
-use crate::form::{Form, Widths};
+use crate::form::{RowForm, Widths};
 use crate::graph::{Artefact, Inputs, Job, JobKind, Key, Store, result_of};
 use crate::json;
 use crate::settings::Settings;
@@ -38,14 +38,14 @@ pub(super) fn fit(material: &Material, is_searched: bool) -> Arc<FitJob> {
 }
 
 /// The form of the rows of a material, as a file or a search decides it. Where all rows have one width, those without a lobe have it, too.
-pub(crate) fn form(material: &Material, settings: &Settings) -> Form {
-    let found = |forms: &BTreeMap<Key, Form>| forms.get(&fit(material, true).key()).copied();
-    let searched = || settings.lobes.as_ref().map(|forms| found(forms).unwrap_or(Form::at_most(LOBES)));
-    let own = material.bake.lobes.map(Form::asked).or_else(searched).unwrap_or(Form::NEEDED);
+pub(crate) fn form(material: &Material, settings: &Settings) -> RowForm {
+    let found = |forms: &BTreeMap<Key, RowForm>| forms.get(&fit(material, true).key()).copied();
+    let searched = || settings.lobes.as_ref().map(|forms| found(forms).unwrap_or(RowForm::at_most(LOBES)));
+    let own = material.bake.lobes.map(RowForm::asked).or_else(searched).unwrap_or(RowForm::NEEDED);
     let common = settings.shape(TableKind::Lobes).and_then(|shape| Some(Widths::in_parts(shape.y.as_ref()?)));
     match common {
         None | Some(Widths::Two) => own,
-        Some(widths) => Form { widths, ..own },
+        Some(widths) => RowForm { widths, ..own },
     }
 }
 
@@ -119,7 +119,7 @@ impl Fit {
     }
 
     /// The error with so many rows. More than a fit has show the same light.
-    pub(super) fn error(&self, Form { widths, is_curved, .. }: Form, rows: usize) -> FitError {
+    pub(super) fn error(&self, RowForm { widths, is_curved, .. }: RowForm, rows: usize) -> FitError {
         let own = self.curved.as_ref().filter(|_| is_curved).map_or(&self.own, |(_, errors)| errors);
         let errors = match (widths, &own.of_one_width, &self.short) {
             (Widths::One, Some(errors), _) | (Widths::Short, _, Some((_, errors))) => errors,
@@ -134,7 +134,7 @@ impl Fit {
     }
 
     /// The lobes, in this form if they have it.
-    pub(super) fn shaped(&self, Form { widths, is_curved, .. }: Form) -> Varied {
+    pub(super) fn shaped(&self, RowForm { widths, is_curved, .. }: RowForm) -> Varied {
         let curved = self.curved.as_ref().filter(|_| is_curved).map(|(varied, _)| varied);
         let whole = curved.unwrap_or(&self.varied).clone();
         let other = match widths {
@@ -197,12 +197,12 @@ impl Fits {
     }
 
     /// The error in a form with so many rows.
-    pub(super) fn error(&self, form: Form, rows: usize) -> FitError {
+    pub(super) fn error(&self, form: RowForm, rows: usize) -> FitError {
         self.of(form.most).error(form, rows)
     }
 
     /// The lobes in a form, where the material has it.
-    pub(super) fn shaped(&self, form: Form) -> Varied {
+    pub(super) fn shaped(&self, form: RowForm) -> Varied {
         self.of(form.most).shaped(form)
     }
 }

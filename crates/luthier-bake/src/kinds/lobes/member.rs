@@ -8,7 +8,7 @@ use luthier_material::Material;
 
 use super::fit::{FitJob, Fits, fit};
 use super::rows::{has_lone_rows, of_model, side};
-use crate::form::{Form, Widths};
+use crate::form::{RowForm, Widths};
 use crate::graph::{Job, Key, Results};
 use crate::plan::Plan;
 
@@ -42,9 +42,9 @@ impl Member<'_> {
 
     /// A form with so many lobes and such widths, and its error with so many rows: with a polynomial for the first interface where it has one and that holds the
     /// limits.
-    pub(super) fn formed(&self, (most, widths, rows): Choice, limits: &Budget) -> (Form, FitError) {
+    pub(super) fn formed(&self, (most, widths, rows): Choice, limits: &Budget) -> (RowForm, FitError) {
         let of = |is_curved| {
-            let form = Form { most: Some(most), widths, is_curved };
+            let form = RowForm { most: Some(most), widths, is_curved };
             (form, self.fits.error(form, rows))
         };
         let has_curve = self.is_lone && self.fits.of(Some(0)).curved.is_some();
@@ -54,13 +54,13 @@ impl Member<'_> {
 
     /// The form with the fewest reads that holds the limits with so many rows, up to one that others take; where none holds, the nearest. Nothing takes less than a short
     /// lobe.
-    pub(super) fn cheapest(&self, choice: Choice, limits: &Budget) -> (Form, FitError) {
+    pub(super) fn cheapest(&self, choice: Choice, limits: &Budget) -> (RowForm, FitError) {
         let (most, widths, rows) = choice;
         let end = STEPS.iter().position(|step| *step == (most, widths)).unwrap_or(STEPS.len());
         let fewer = if widths == Widths::Short { &[] } else { &STEPS[..end] };
         let fewer = fewer.iter().filter(|(_, widths)| self.has(*widths)).map(|&(most, widths)| (most, widths, rows));
         let formed: Vec<_> = fewer.chain([choice]).map(|choice| self.formed(choice, limits)).collect();
-        let excess = |(_, error): &(Form, FitError)| limits.excess(&measured(*error)).max(1.0);
+        let excess = |(_, error): &(RowForm, FitError)| limits.excess(&measured(*error)).max(1.0);
         // Of equal ones the first.
         let found = formed.into_iter().min_by(|a, b| excess(a).total_cmp(&excess(b)));
         found.unwrap_or_else(|| unreachable!("a choice is a form"))

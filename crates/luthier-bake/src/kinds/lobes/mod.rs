@@ -26,7 +26,7 @@ use self::tile::LobesJob;
 use super::{Kind, Site};
 use crate::BakeError;
 use crate::candidates::{self, Found, Refusal, choose, cost, locked};
-use crate::form::{Form, Widths};
+use crate::form::{RowForm, Widths};
 use crate::graph::{Graph, Job, Key, Results};
 use crate::options::Options;
 use crate::plan::Plan;
@@ -107,7 +107,7 @@ pub(crate) fn decide(
             let fits: &Fits = results.get(fit(material, form.most.is_some()).key())?;
             Some((fits, form))
         });
-        let fits: Vec<(&Fits, Form)> = fits.collect();
+        let fits: Vec<(&Fits, RowForm)> = fits.collect();
         let lobes = fits.iter().map(|(fits, form)| fits.of(form.most).lobes()).max().unwrap_or(0);
         let are_short = fits.iter().all(|(fits, _)| fits.of(Some(1)).short.is_some());
         let widths = match Widths::of(materials) {
@@ -137,7 +137,7 @@ pub(crate) fn decide(
         if is_own { member.cheapest(choice, budget) } else { member.formed(choice, budget) }
     };
     let candidate = |pick: Pick| {
-        let (forms, errors): (Vec<Form>, Vec<FitError>) = members.iter().map(|member| formed(member, pick)).unzip();
+        let (forms, errors): (Vec<RowForm>, Vec<FitError>) = members.iter().map(|member| formed(member, pick)).unzip();
         let fits = || members.iter().zip(&forms).map(|(member, form)| member.fits.of(form.most));
         let lobes = fits().map(Fit::lobes).max().unwrap_or(0);
         let tiles = fits().map(|fit| fit.varied.tiles() as u32).sum();

@@ -8,7 +8,7 @@ use luthier_manifest::{Budget, LobesForm};
 use luthier_material::Material;
 
 use super::rows::{ROWS, has_base, is_family, of_model, side, varying};
-use crate::form::{Form, Widths};
+use crate::form::{RowForm, Widths};
 use crate::options::Options;
 use crate::settings::{Shape, axis};
 
@@ -105,7 +105,7 @@ pub(super) fn shape_with(materials: &[Material], widths: Widths, lobes: usize, f
 impl Widths {
     /// Widths of all rows by the forms of files.
     pub(super) fn of(materials: &[Material]) -> Self {
-        let forms = of_model(materials).map(|material| material.bake.lobes.map_or(Form::NEEDED, Form::asked));
+        let forms = of_model(materials).map(|material| material.bake.lobes.map_or(RowForm::NEEDED, RowForm::asked));
         Self::common(&forms.collect::<Vec<_>>())
     }
 

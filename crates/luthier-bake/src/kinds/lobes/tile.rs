@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::fit::{FitJob, Fits, factor_name, with_rows};
 use super::rows::is_family;
-use crate::form::{Form, Widths};
+use crate::form::{RowForm, Widths};
 use crate::graph::{Artefact, Inputs, Job, JobKind};
 use crate::json;
 use crate::tile::{TileData, color_in_words, lone_tile};
@@ -66,7 +66,7 @@ impl Parts {
 pub(super) struct LobesJob {
     pub(super) fit: Arc<FitJob>,
     /// Form of the rows.
-    pub(super) form: Form,
+    pub(super) form: RowForm,
     /// Number of the tile, over the varying factor or over the azimuth.
     pub(super) tile: usize,
     /// Cosine of the view, and part.
